@@ -1,0 +1,109 @@
+"""Gravity-aligned oriented boxes of objects, and `BoxMap`, the product of both box assets."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+from numpy.typing import ArrayLike, NDArray
+
+
+@dataclass(frozen=True)
+class ObjectBox:
+    """One object. World frame (z up), metres; ``yaw`` turns the box's x axis from world +x, counter-clockwise, radians."""
+
+    object_id: int
+    label: str  # a noun in lower case: "office chair"; "object" where nothing better is known
+    centre: tuple[float, float, float]
+    size: tuple[float, float, float]  # full lengths along the box's own x, y, z
+    yaw: float
+    score: float  # 0..1
+    label_source: str  # what named it: "size_prior", "recogniser", "detector", "boxer"
+    colour: str  # a basic colour name as seen: "dark green"; "" if not measured
+    material: str  # a guess; "" if not measured
+    supporting_frames: int  # pictures that saw it
+    nearest_camera_distance: float  # metres, from the optical centre of the nearest supporting picture
+    annotator: str  # name and version: "embedded 1", "boxer d364743"
+
+    @property
+    def rotation(self) -> NDArray[np.float64]:
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])  # (3, 3) world from box
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+        return (signs * self.size) @ self.rotation.T + self.centre  # (8, 3)
+
+    @property
+    def top(self) -> float:
+        return self.centre[2] + self.size[2] / 2
+
+    @property
+    def bottom(self) -> float:
+        return self.centre[2] - self.size[2] / 2
+
+    def to_local(self, points: ArrayLike) -> NDArray[np.float64]:
+        """World points (..., 3) in the box's own frame: origin at its centre, axes along its sides."""
+        return (np.asarray(points, float) - self.centre) @ self.rotation  # (..., 3)
+
+    def contains(self, points: ArrayLike, margin: float = 0.0) -> NDArray[np.bool_]:
+        """True (...,) where world points (..., 3) lie in the box grown by ``margin`` metres on each side."""
+        return (np.abs(self.to_local(points)) <= np.asarray(self.size) / 2 + margin).all(axis=-1)
+
+    def distance(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Metres (...,) from world points (..., 3) to the box's surface; 0 inside."""
+        outside = np.maximum(np.abs(self.to_local(points)) - np.asarray(self.size) / 2, 0.0)
+        return np.linalg.norm(outside, axis=-1)
+
+
+BOX_SCHEMA = pa.schema(
+    [
+        ("object_id", pa.int32()),
+        ("label", pa.string()),
+        ("centre", pa.list_(pa.float64(), 3)),
+        ("size", pa.list_(pa.float64(), 3)),
+        ("yaw", pa.float64()),
+        ("score", pa.float64()),
+        ("label_source", pa.string()),
+        ("colour", pa.string()),
+        ("material", pa.string()),
+        ("supporting_frames", pa.int32()),
+        ("nearest_camera_distance", pa.float64()),
+        ("annotator", pa.string()),
+    ]
+)
+
+
+@dataclass(frozen=True)
+class BoxMap:
+    """The objects of a scene; ``boxes[i].object_id`` is unique and stays with the object through all later products."""
+
+    boxes: tuple[ObjectBox, ...]
+
+    def __len__(self) -> int:
+        return len(self.boxes)
+
+    def __iter__(self) -> Iterator[ObjectBox]:
+        return iter(self.boxes)
+
+    def by_id(self, object_id: int) -> ObjectBox:
+        """The box with this id; KeyError if there is none."""
+        for box in self.boxes:
+            if box.object_id == object_id:
+                return box
+        raise KeyError(object_id)
+
+    def summary(self) -> dict[str, int | float]:
+        return {"objects": len(self), "labels": len({b.label for b in self})}
+
+    def save(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        pq.write_table(pa.Table.from_pylist([asdict(b) for b in self], schema=BOX_SCHEMA), folder / "boxes.parquet")
+
+    @staticmethod
+    def load(folder: Path) -> "BoxMap":
+        rows = pq.read_table(folder / "boxes.parquet", schema=BOX_SCHEMA).to_pylist()
+        return BoxMap(tuple(ObjectBox(**{**r, "centre": tuple(r["centre"]), "size": tuple(r["size"])}) for r in rows))

@@ -1,0 +1,1 @@
+"""All scenes together: episodes, splits, statistics, exports and their reader. Knows products, not algorithms."""

@@ -1,0 +1,55 @@
+"""`Prompts`, the product of the `prompts` asset: up to three instructions for each kept flight."""
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Literal
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+PromptKind = Literal["object_centred", "relative", "appearance"]
+
+
+@dataclass(frozen=True)
+class Prompt:
+    """One instruction; it was read back against all boxes and picked exactly its target."""
+
+    flight_id: int
+    kind: PromptKind
+    text: str
+    writer: str  # "offline 1"; a VLM's name and prompt hash
+
+
+PROMPT_SCHEMA = pa.schema(
+    [("flight_id", pa.int32()), ("kind", pa.string()), ("text", pa.string()), ("writer", pa.string())]
+)
+
+
+@dataclass(frozen=True)
+class Prompts:
+    """Prompts in the order of flights, then kinds."""
+
+    prompts: tuple[Prompt, ...]
+
+    def __iter__(self) -> Iterator[Prompt]:
+        return iter(self.prompts)
+
+    def __len__(self) -> int:
+        return len(self.prompts)
+
+    def of_flight(self, flight_id: int) -> tuple[Prompt, ...]:
+        return tuple(p for p in self if p.flight_id == flight_id)
+
+    def summary(self) -> dict[str, str | int | float]:
+        flights = {p.flight_id for p in self}
+        return {"prompts": len(self), "flights_with_prompts": len(flights)}
+
+    def save(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        pq.write_table(pa.Table.from_pylist([asdict(p) for p in self], schema=PROMPT_SCHEMA), folder / "prompts.parquet")
+
+    @staticmethod
+    def load(folder: Path) -> "Prompts":
+        rows = pq.read_table(folder / "prompts.parquet", schema=PROMPT_SCHEMA).to_pylist()
+        return Prompts(tuple(Prompt(**r) for r in rows))

@@ -1,0 +1,1 @@
+"""Cameras, the paper's camera placements, and turning Gaussians into RGB, expected depth and alpha. Knows splats."""

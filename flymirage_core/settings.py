@@ -1,0 +1,198 @@
+"""One settings object for everything, validated at start. Defaults are the paper's, with symbol and section.
+
+Every field can be set by an environment variable (``FLYMIRAGE_TASKS__SETS=20``) or in ``flymirage.toml`` beside the
+working directory. Lengths in metres, angles in radians except fields ending in ``_deg``. A stage's section is part of its
+code version: changing it makes exactly that stage, and what follows from it, stale.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
+
+Positive = Annotated[float, Field(gt=0)]
+Count = Annotated[int, Field(ge=1)]
+
+
+class Section(BaseModel):
+    """A stage's part of the settings: frozen, and unknown names are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class GenerationSettings(Section):
+    """The embedded world model."""
+
+    gaussians: Count = 400_000
+    """About how many Gaussians a generated world has."""
+
+
+class CleaningSettings(Section):
+    """What is taken out of a world before use."""
+
+    min_opacity: Positive = 1 / 255
+    max_scale: Positive = 3.0
+    """Gaussians with a larger standard deviation are haze or sky painted near."""
+    max_distance: Positive = 60.0
+    """From c; captured rooms have outliers hundreds of metres away."""
+
+
+class OccupancySettings(Section):
+    """Voxels from splats; names and defaults follow the field's voxelisers."""
+
+    resolution: Positive = 0.1
+    opacity_threshold: Positive = 0.1
+    min_component_voxels: Count = 8
+    """Smaller islands of occupied voxels are floaters."""
+
+
+class ViewSettings(Section):
+    """The pictures that annotation sees, and the paper's inward orbit (section III-B)."""
+
+    width: Count = 320
+    height: Count = 240
+    horizontal_fov_deg: Positive = 90.0
+    orbit_radius: Positive = 0.1
+    """r_orb"""
+    orbit_elevations_deg: tuple[float, ...] = (-35.0, -10.0, 15.0)
+    """theta: the elevations of the viewing sphere that are swept."""
+    orbit_yaws: Count = 12
+    """psi: steps of the complete yaw sweep at each elevation."""
+
+
+class TargetSettings(Section):
+    """Algorithm 1, distance-aware target selection (section III-B)."""
+
+    max_targets: Count = 5
+    """N_t"""
+    min_azimuth_deg: Positive = 35.0
+    """theta_th"""
+    near_distance: Positive = 3.0
+    """d_th1: boxes are trusted within it; also d_prune."""
+    far_distance: Positive = 4.0
+    """d_th2: boxes beyond it need a closer look."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "TargetSettings":
+        if self.near_distance >= self.far_distance:
+            raise ValueError("near_distance (d_th1) must be less than far_distance (d_th2)")
+        return self
+
+
+class ExplorationSettings(Section):
+    """Camera paths to the targets, with a four-view rig (section III-B)."""
+
+    clearance: Positive = 0.25
+    """Obstacles are inflated by this for the A* search."""
+    rig_spacing: Positive = 0.5
+    """Distance along the path between two rigs."""
+    stand_off: Positive = 1.0
+    """The path ends this far before the target's box at the latest."""
+
+
+class AnnotationSettings(Section):
+    """Boxes from posed RGB-D; the distance limit of the second pass is d_th1 of `TargetSettings`."""
+
+    voxel: Positive = 0.03
+    fusion_iou: Positive = 0.3
+
+
+class TaskSettings(Section):
+    """Task sets (section III-C)."""
+
+    sets: Count = 8
+    """N_s; the paper's scenes have about 100 flights, 20 sets of 5."""
+    targets_per_set: Count = 5
+    """N_o"""
+    min_distance: Positive = 2.0
+    max_distance: Positive = 10.0
+    sight_radius: Positive = 0.1
+    """Radius of the cylinder round the ray of the visibility check."""
+    safety_radius: Positive = 0.35
+    """No occupied point may lie this close to a target point."""
+    stand_off: Positive = 0.8
+    """Distance of the target point from the object's box, towards where the drone comes from."""
+
+
+class PlannerSettings(Section):
+    """EGO-Planner and the quadrotor's limits (norms, not per axis)."""
+
+    max_speed: Positive = 1.5
+    max_acceleration: Positive = 2.0
+    max_jerk: Positive = 8.0
+    max_yaw_rate: Positive = 0.8
+    max_yaw_acceleration: Positive = 1.5
+    inflation: Positive = 0.3
+    min_inflation: Positive = 0.2
+    """The last attempt before a task is rejected uses this; the flight's row says so."""
+    state_rate: Positive = 30.0
+    """Hz at which flight states are recorded."""
+
+
+class FrameSettings(Section):
+    """The drone's camera and its video."""
+
+    width: Count = 480
+    height: Count = 360
+    horizontal_fov_deg: Positive = 80.0
+    rate: Positive = 10.0
+    """Hz; must divide the planner's state_rate."""
+    pitch_deg: float = 0.0
+    """Downward tilt of the camera on the body."""
+
+
+class VerdictSettings(Section):
+    """Thresholds of the measured gates."""
+
+    min_alpha_coverage: Positive = 0.9
+    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame."""
+    min_sharpness: Positive = 15.0
+    """Least variance of the Laplacian (grey levels squared), median over frames."""
+    min_brightness: Positive = 20.0
+    max_brightness: Positive = 235.0
+    min_target_visible: Positive = 0.5
+    """Least share of sampled frames in which the target's centre is in the picture and not occluded."""
+    max_final_angle_deg: Positive = 25.0
+    """Most between the final view's axis and the target's centre."""
+    min_progress: Positive = 0.3
+    """Least fall of the distance to the target, as a share of its start."""
+    min_clearance: Positive = 0.15
+    frame_step: Count = 30
+    """The paper samples every 30th frame of a 30 Hz video; at another rate the same seconds are meant."""
+
+
+class Settings(BaseSettings):
+    """All settings of a FlyMirage project."""
+
+    model_config = SettingsConfigDict(
+        env_prefix="FLYMIRAGE_", env_nested_delimiter="__", toml_file="flymirage.toml", frozen=True, extra="forbid"
+    )
+
+    profile: Literal["offline"] = "offline"
+    store: str = ".flymirage/store"
+    """A local path or any fsspec URL."""
+    threads: int = Field(default=0, ge=0)
+    """Rendering threads; 0 = all cores."""
+
+    generation: GenerationSettings = GenerationSettings()
+    cleaning: CleaningSettings = CleaningSettings()
+    occupancy: OccupancySettings = OccupancySettings()
+    views: ViewSettings = ViewSettings()
+    targets: TargetSettings = TargetSettings()
+    exploration: ExplorationSettings = ExplorationSettings()
+    annotation: AnnotationSettings = AnnotationSettings()
+    tasks: TaskSettings = TaskSettings()
+    planner: PlannerSettings = PlannerSettings()
+    frames: FrameSettings = FrameSettings()
+    verdict: VerdictSettings = VerdictSettings()
+
+    @classmethod
+    def settings_customise_sources(
+        cls,
+        settings_cls: type[BaseSettings],
+        init_settings: PydanticBaseSettingsSource,
+        env_settings: PydanticBaseSettingsSource,
+        dotenv_settings: PydanticBaseSettingsSource,
+        file_secret_settings: PydanticBaseSettingsSource,
+    ) -> tuple[PydanticBaseSettingsSource, ...]:
+        return init_settings, env_settings, TomlConfigSettingsSource(settings_cls)
