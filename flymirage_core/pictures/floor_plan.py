@@ -1,0 +1,67 @@
+"""The scene from above: what is occupied, the boxes, camera paths and flights."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flymirage_core.annotation.boxes import ObjectBox
+from flymirage_core.occupancy.grid import FREE, OCCUPIED, OccupancyGrid
+from flymirage_core.pictures.canvas import INK, PAPER, Colour, Picture, hue, put_text
+
+_PIXELS_PER_METRE = 70
+_MAX_SIDE = 1100
+
+
+@dataclass(frozen=True, eq=False)
+class FloorPlan:
+    """A drawing that looks down along -z: +x to the right, +y up. Draw into ``picture`` through its methods."""
+
+    picture: Picture
+    lower: NDArray[np.float64]  # (2,) world x, y of the lower left corner
+    scale: float  # pixels per metre
+
+    @staticmethod
+    def of(grid: OccupancyGrid, heights: tuple[float, float]) -> "FloorPlan":
+        """Grey where something is occupied between the two ``heights`` (metres), white where one could fly there."""
+        low, high = (int(np.clip(i, 0, grid.state.shape[2])) for i in grid.index_of([[0, 0, h] for h in heights])[:, 2])
+        layer = grid.state[:, :, low : max(high, low + 1)]
+        share = (layer == OCCUPIED).mean(axis=2)  # (X, Y)
+        free = (layer == FREE).any(axis=2)
+        shade = np.where(free, 255 - 150 * share, np.where(share > 0, 120 - 60 * share, 216))
+        size = np.array(share.shape) * grid.resolution
+        scale = min(_PIXELS_PER_METRE, _MAX_SIDE / float(size.max()))
+        image = cv2.resize(
+            np.flipud(shade.T).astype(np.uint8),
+            (max(1, int(size[0] * scale)), max(1, int(size[1] * scale))),
+            interpolation=cv2.INTER_NEAREST,
+        )
+        return FloorPlan(np.repeat(image[:, :, None], 3, axis=2).astype(np.uint8), grid.origin[:2], scale)
+
+    def pixel(self, points: ArrayLike) -> NDArray[np.int32]:
+        """Pixels (N, 2) of world points (N, 2 or 3)."""
+        xy = (np.atleast_2d(np.asarray(points, float))[:, :2] - self.lower) * self.scale
+        return np.rint(np.stack([xy[:, 0], self.picture.shape[0] - xy[:, 1]], axis=1)).astype(np.int32)
+
+    def path(self, points: ArrayLike, colour: Colour, thickness: int = 2) -> None:
+        cv2.polylines(self.picture, [self.pixel(points)], False, colour, thickness, cv2.LINE_AA)
+
+    def dot(self, point: ArrayLike, colour: Colour, radius: int = 5) -> None:
+        x, y = self.pixel(point)[0]
+        cv2.circle(self.picture, (int(x), int(y)), radius, colour, -1, cv2.LINE_AA)
+
+    def boxes(self, boxes: Iterable[ObjectBox]) -> None:
+        for box in boxes:
+            corners = self.pixel(box.corners[[0, 4, 6, 2]])
+            cv2.polylines(self.picture, [corners], True, hue(box.object_id), 1, cv2.LINE_AA)
+            x, y = self.pixel(box.centre)[0]
+            put_text(self.picture, box.label, (int(x) - 3 * len(box.label), int(y)), 0.33, INK)
+
+    def with_caption(self, lines: Sequence[str]) -> Picture:
+        """The drawing with lines of text below it."""
+        strip = np.full((10 + 18 * len(lines), self.picture.shape[1], 3), PAPER, np.uint8)
+        for i, line in enumerate(lines):
+            put_text(strip, line, (8, 18 + 18 * i), 0.42)
+        return np.concatenate([self.picture, strip], axis=0)

@@ -1,0 +1,45 @@
+"""Dagster's door to the store: outputs are published here, inputs are loaded here, and nobody else knows of folders."""
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import dagster as dg
+from pydantic import PrivateAttr
+
+from resources.records import ProductRecord
+from resources.store import ALL_SCENES, Staged, Store, open_store
+
+
+@dataclass(frozen=True)
+class Commit:
+    """What an asset hands over: a staged product with its record, or (``staged`` None) the record that stays current."""
+
+    record: ProductRecord
+    staged: Staged | None = None
+    preview: bytes | None = None
+
+
+class ProductIOManager(dg.ConfigurableIOManager):
+    """Publishes `Commit`s and loads products by the type that the asking asset declares."""
+
+    base: str
+    _store: Store | None = PrivateAttr(default=None)
+
+    @property
+    def store(self) -> Store:
+        if self._store is None:
+            self._store = open_store(self.base)
+        return self._store
+
+    def handle_output(self, context: dg.OutputContext, obj: Commit) -> None:
+        if obj.staged is None:
+            return
+        started = time.perf_counter()
+        self.store.publish(obj.staged, obj.record, obj.preview)
+        context.add_output_metadata({"commit_seconds": round(time.perf_counter() - started, 3)})
+
+    def load_input(self, context: dg.InputContext) -> Any:
+        asset = context.asset_key.path[-1]
+        scene = context.partition_key if context.has_partition_key else ALL_SCENES
+        return context.dagster_type.typing_type.load(self.store.folder(asset, scene))

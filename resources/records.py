@@ -1,0 +1,93 @@
+"""The small JSON documents of the store: what a scene is, and which bytes are a product's current ones."""
+
+from typing import Any, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+
+from flymirage_core.errors import ProductError
+from flymirage_core.scene.keys import check_scene_key
+
+SCHEMA_VERSION = 1
+"""Of both documents; raised when a reader of the old ones would misread the new ones."""
+
+
+class Document(BaseModel):
+    model_config = ConfigDict(frozen=True)
+    schema_version: int = SCHEMA_VERSION
+
+
+class SceneOrigin(Document):
+    """Where a scene comes from: words, or a world file that the user brought (kept in the store beside this)."""
+
+    scene: str
+    kind: Literal["generated", "imported"]
+    title: str = ""
+    category: str = ""  # generated: the taxonomy pick
+    subcategory: str = ""
+    file_name: str = ""  # imported
+    file_sha256: str = ""
+    up: str = "auto"
+    scale: float | None = None  # metres per file unit; None = estimate
+
+    @field_validator("scene")
+    @classmethod
+    def _key(cls, value: str) -> str:
+        return check_scene_key(value)
+
+
+class FileEntry(BaseModel):
+    model_config = ConfigDict(frozen=True)
+    size: int
+    sha256: str
+
+
+class ProductRecord(Document):
+    """``product.json``: which folder is current, and everything needed to know why it holds what it holds."""
+
+    asset: str
+    scene: str
+    digest: str  # content hash of the files, and the folder's name
+    input_hash: str  # H(code version, settings, upstream digests): the same -> nothing to do
+    code_version: str
+    flymirage_version: str
+    settings: dict[str, Any]  # the sections that this stage reads
+    seed: str  # randomness comes from (scene key, stage, index); this is the key
+    inputs: dict[str, str]  # upstream asset -> digest
+    tools: dict[str, str]  # rasterizer, annotator...: names and versions
+    files: dict[str, FileEntry]
+    summary: dict[str, str | int | float]
+    seconds: float
+    usd: float = 0.0
+    created_at: str = Field(description="UTC, ISO 8601")
+
+    @property
+    def bytes(self) -> int:
+        return sum(f.size for f in self.files.values())
+
+
+def parse_record(text: str, where: str) -> ProductRecord:
+    """Read a ``product.json``; raise `ProductError` for one that is torn or of a version this code does not know."""
+    return _parse(ProductRecord, text, where)
+
+
+def parse_origin(text: str, where: str) -> SceneOrigin:
+    """Read a scene's registration; errors as in `parse_record`."""
+    return _parse(SceneOrigin, text, where)
+
+
+D = TypeVar("D", bound=Document)
+
+
+def _parse(kind: type[D], text: str, where: str) -> D:
+    try:
+        version = Document.model_validate_json(text).schema_version
+        if version != SCHEMA_VERSION:
+            raise ProductError(
+                f"{where} has schema version {version}, this FlyMirage reads version {SCHEMA_VERSION}: "
+                "use the FlyMirage that wrote it, or delete the folder and materialise again"
+            )
+        return kind.model_validate_json(text)
+    except ValidationError as error:
+        first = error.errors()[0]
+        field = ".".join(str(part) for part in first["loc"]) or "the document"
+        raise ProductError(f"{where} cannot be read: {field}: {first['msg']}; delete it and materialise again") from error

@@ -1,0 +1,272 @@
+"""The store: where products are, committed so that nothing half-written is ever read.
+
+Layout under the base (a local path or any fsspec URL)::
+
+    scenes/<scene>.json                        what the scene is (`SceneOrigin`)
+    imports/<scene>/<file>                     the world file a user brought
+    products/<asset>/<scene>/<digest>/...      files, named by their content
+    products/<asset>/<scene>/product.json      written last: which digest is current, and its provenance
+    staging/                                   work in progress; never read, swept when old
+
+A writer that is killed leaves at most an unreferenced folder. Reading goes by ``product.json`` alone.
+"""
+
+import hashlib
+import os
+import shutil
+import tempfile
+import time
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from upath import UPath
+
+from flymirage_core.errors import InputError, ProductError
+from flymirage_core.product import Product
+from flymirage_core.scene.keys import check_scene_key
+from resources.faults import fault_point
+from resources.records import FileEntry, ProductRecord, SceneOrigin, parse_origin, parse_record
+
+STALE_STAGING_SECONDS = 24 * 3600
+PREVIEW_NAME = "preview.jpg"
+"""A picture for people: kept beside the product, outside of its content hash."""
+
+
+@dataclass(frozen=True)
+class Staged:
+    """A product written to a private folder and hashed, not yet visible to anyone."""
+
+    folder: Path
+    files: dict[str, FileEntry]
+    digest: str
+
+
+class Store:
+    """Products and scenes under one base. Safe for several processes: the last complete commit wins."""
+
+    def __init__(self, base: str) -> None:
+        self.base = UPath(base) if "://" in base else UPath(os.path.abspath(base))  # noqa: PTH100
+        self.is_local = self.base.protocol in ("", "file", "local")
+
+    # Scenes ---------------------------------------------------------------------------------------------------------
+
+    def register(self, origin: SceneOrigin) -> None:
+        """Make a scene known. Registering it again with other contents replaces it (its products become stale)."""
+        self._put_text(self.base / "scenes" / f"{origin.scene}.json", origin.model_dump_json(indent=2) + "\n")
+
+    def origin(self, scene: str) -> SceneOrigin | None:
+        """What a scene is, or None if nobody registered it (a key typed in the UI)."""
+        path = self.base / "scenes" / f"{check_scene_key(scene)}.json"
+        return parse_origin(path.read_text(), str(path)) if path.exists() else None
+
+    def scenes(self) -> list[str]:
+        """Keys of all registered scenes, sorted."""
+        folder = self.base / "scenes"
+        return sorted(p.stem for p in folder.iterdir() if p.suffix == ".json") if folder.exists() else []
+
+    def keep_import(self, scene: str, source: Path) -> str:
+        """Copy a world file into the store; return its sha256."""
+        target = self.base / "imports" / check_scene_key(scene) / f"world{source.suffix.lower()}"
+        staged = self._staging_folder() / source.name
+        try:
+            shutil.copy2(source, staged)
+            self._move_file(staged, target)
+        finally:
+            shutil.rmtree(staged.parent, ignore_errors=True)
+        return sha256_of(source)
+
+    def imported_file(self, origin: SceneOrigin) -> Path:
+        """A local copy of the world file of an imported scene; raises `ProductError` if it is gone or changed."""
+        name = f"world{Path(origin.file_name).suffix.lower()}"
+        local = self._local(self.base / "imports" / origin.scene, [name]) / name
+        if not local.exists() or sha256_of(local) != origin.file_sha256:
+            raise ProductError(
+                f"the world file of scene {origin.scene!r} ({local}) is gone or differs from what was imported: "
+                f"run `flymirage import {origin.file_name} --scene {origin.scene}` again"
+            )
+        return local
+
+    # Products -------------------------------------------------------------------------------------------------------
+
+    def current(self, asset: str, scene: str) -> ProductRecord | None:
+        """The record of the product that is current, or None if there is none yet."""
+        path = self._product(asset, scene) / "product.json"
+        try:
+            text = path.read_text()
+        except FileNotFoundError:
+            return None
+        return parse_record(text, str(path))
+
+    def folder(self, asset: str, scene: str) -> Path:
+        """A local folder with the current product's files; raises `ProductError` if it is missing or torn."""
+        record = self.current(asset, scene)
+        if record is None:
+            raise ProductError(f"scene {scene!r} has no product {asset!r} yet: materialise it first")
+        folder = self._local(self._product(asset, scene) / record.digest, list(record.files))
+        for name, entry in record.files.items():
+            path = folder / name
+            if not path.exists() or path.stat().st_size != entry.size:
+                raise ProductError(
+                    f"{path} is missing or torn (expected {entry.size} bytes): delete {path.parent} and "
+                    f"materialise {asset!r} of scene {scene!r} again"
+                )
+        return folder
+
+    def is_whole(self, record: ProductRecord) -> bool:
+        """True if every file of the record is there with its size."""
+        try:
+            self.folder(record.asset, record.scene)
+        except ProductError:
+            return False
+        return True
+
+    def stage(self, product: Product) -> Staged:
+        """Write ``product`` to a private folder and hash it. Nobody sees it until `publish`."""
+        folder = self._staging_folder() / "product"
+        product.save(folder)
+        fault_point("staged")
+        files = {
+            path.relative_to(folder).as_posix(): FileEntry(size=path.stat().st_size, sha256=sha256_of(path))
+            for path in sorted(folder.rglob("*"))
+            if path.is_file()
+        }
+        listing = "".join(f"{name}\0{entry.sha256}\n" for name, entry in files.items())
+        return Staged(folder, files, hashlib.sha256(listing.encode()).hexdigest()[:32])
+
+    def publish(self, staged: Staged, record: ProductRecord, preview: bytes | None = None) -> None:
+        """Make a staged product the current one: its files first, the pointer last."""
+        if preview is not None:
+            (staged.folder / PREVIEW_NAME).write_bytes(preview)
+        target = self._product(record.asset, record.scene)
+        if self.is_local:
+            _move_folder(staged.folder, Path(os.fspath(target / record.digest)))
+        else:
+            names = [*staged.files, PREVIEW_NAME] if preview is not None else list(staged.files)
+            for name in names:
+                _upload(staged.folder / name, target / record.digest / name)
+        fault_point("files committed")
+        self._put_text(target / "product.json", record.model_dump_json(indent=2) + "\n")
+        fault_point("pointer committed")
+        shutil.rmtree(staged.folder.parent, ignore_errors=True)
+
+    @contextmanager
+    def scratch(self) -> Iterator[Path]:
+        """A private folder, on the store's own disk if it has one, that is gone afterwards."""
+        folder = self._staging_folder()
+        try:
+            yield folder
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+
+    # Within ---------------------------------------------------------------------------------------------------------
+
+    def _product(self, asset: str, scene: str) -> UPath:
+        if scene != ALL_SCENES:
+            check_scene_key(scene)
+        return self.base / "products" / asset / scene
+
+    def _staging_folder(self) -> Path:
+        if not self.is_local:
+            return Path(tempfile.mkdtemp(prefix="flymirage-"))
+        root = Path(os.fspath(self.base)) / "staging"
+        root.mkdir(parents=True, exist_ok=True)
+        for old in root.iterdir():
+            if time.time() - old.stat().st_mtime > STALE_STAGING_SECONDS:
+                shutil.rmtree(old, ignore_errors=True)
+        folder = root / uuid.uuid4().hex
+        folder.mkdir()
+        return folder
+
+    def _local(self, folder: UPath, names: list[str]) -> Path:
+        """``folder`` itself on a disk; else a cached copy (content-addressed, so never stale)."""
+        if self.is_local:
+            return Path(os.fspath(folder))
+        cache = Path(tempfile.gettempdir()) / "flymirage-cache" / hashlib.sha256(str(folder).encode()).hexdigest()[:32]
+        for name in names:
+            path = cache / name
+            if not path.exists():
+                path.parent.mkdir(parents=True, exist_ok=True)
+                part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
+                part.write_bytes((folder / name).read_bytes())
+                part.replace(path)
+        return cache
+
+    def _put_text(self, path: UPath, text: str) -> None:
+        if not self.is_local:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+            return
+        local = Path(os.fspath(path))
+        local.parent.mkdir(parents=True, exist_ok=True)
+        part = local.with_name(f"{local.name}.{uuid.uuid4().hex}")
+        with part.open("w") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        part.replace(local)
+        _sync_folder(local.parent)
+
+    def _move_file(self, source: Path, target: UPath) -> None:
+        if self.is_local:
+            local = Path(os.fspath(target))
+            local.parent.mkdir(parents=True, exist_ok=True)
+            source.replace(local)
+        else:
+            _upload(source, target)
+
+
+ALL_SCENES = "_all"
+"""Stands in a scene's place for products over all scenes; no scene can have this key."""
+
+
+def open_store(base: str) -> Store:
+    """The store at ``base``; raises `InputError` if that cannot be written to."""
+    store = Store(base)
+    if store.is_local:
+        try:
+            Path(os.fspath(store.base)).mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(
+                f"the store {base!r} cannot be made ({error.strerror}): set FLYMIRAGE_STORE to a folder you may write to"
+            ) from error
+    return store
+
+
+def sha256_of(path: Path) -> str:
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _move_folder(source: Path, target: Path) -> None:
+    """Move a complete folder into place. One that is already there has the same bytes: names are content hashes."""
+    for path in source.rglob("*"):
+        if path.is_file():
+            with path.open("rb") as file:
+                os.fsync(file.fileno())
+    target.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        source.rename(target)
+    except OSError:
+        if not target.is_dir():
+            raise
+        replaced = source.parent / "replaced"  # a torn copy may lie there: always put the fresh one
+        target.rename(replaced)
+        source.rename(target)
+    _sync_folder(target.parent)
+
+
+def _upload(source: Path, target: UPath) -> None:
+    target.parent.mkdir(parents=True, exist_ok=True)
+    with source.open("rb") as reader, target.open("wb") as writer:
+        shutil.copyfileobj(reader, writer)
+
+
+def _sync_folder(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
