@@ -12,8 +12,9 @@ Float32 = NDArray[np.float32]
 def clearance_field(grid: OccupancyGrid) -> Float32:
     """(X, Y, Z) metres from each voxel's centre to the nearest blocked voxel's surface; 0 in blocked voxels.
 
-    Exact (the distance to a box is a sum over axes, so three passes of one-dimensional minima give it), where a Euclidean
-    distance transform between centres would be up to 0.37 voxels too long beside corners. Outside of the grid is blocked.
+    Exact (the distance to a box is a sum over axes, so three passes of one-dimensional minima give it), where a
+    Euclidean distance transform between centres would be up to 0.37 voxels too long beside corners. Outside of the
+    grid is blocked.
     """
     squared = np.where(grid.blocked, 0, np.inf).astype(np.float32)  # (X, Y, Z) voxels^2
     for axis in range(3):
@@ -33,8 +34,8 @@ def clearance_at(grid: OccupancyGrid, field: Float32, points: ArrayLike) -> Floa
 def inflate(grid: OccupancyGrid, radius: float) -> OccupancyGrid:
     """The grid as the centre of a ball of ``radius`` metres sees it: free only where the whole ball is in free space.
 
-    Euclidean, from voxel centres to blocked surfaces: 0.3 m at 0.1 m resolution is three voxels off a wall. What becomes
-    blocked becomes OCCUPIED; nothing becomes free.
+    Euclidean, from voxel centres to blocked surfaces: 0.3 m at 0.1 m resolution is three voxels off a wall. What
+    becomes blocked becomes OCCUPIED; nothing becomes free.
     """
     tolerance = 1e-4 * grid.resolution
     reached = (grid.state == FREE) & (clearance_field(grid) < radius - tolerance)
@@ -43,7 +44,7 @@ def inflate(grid: OccupancyGrid, radius: float) -> OccupancyGrid:
 
 @numba.njit(cache=True, nogil=True)
 def _line_distances(lines: Float32) -> Float32:
-    """Along each line (M, n): min over d of value at distance d plus (gap between the voxels)^2; beyond the ends is 0."""
+    """Along each line (M, n): least of value at distance d plus (gap between the voxels)^2; 0 beyond the ends."""
     out = np.empty_like(lines)
     n = lines.shape[1]
     for m in range(len(lines)):

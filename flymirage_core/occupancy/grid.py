@@ -26,7 +26,7 @@ class OccupancyGrid:
     @property
     def blocked(self) -> NDArray[np.bool_]:
         """True where one may not fly: occupied or unknown."""
-        return self.state != FREE  # (X, Y, Z)
+        return np.asarray(self.state != FREE)  # (X, Y, Z)
 
     def index_of(self, points: ArrayLike) -> NDArray[np.intp]:
         """Voxel indices (..., 3) of world points (..., 3); may lie outside of the array."""
@@ -39,7 +39,7 @@ class OccupancyGrid:
     def contains(self, indices: ArrayLike) -> NDArray[np.bool_]:
         """True (...,) where voxel indices (..., 3) lie inside of the array."""
         indices = np.asarray(indices)
-        return ((indices >= 0) & (indices < self.state.shape)).all(axis=-1)
+        return np.asarray(((indices >= 0) & (indices < self.state.shape)).all(axis=-1))
 
     def state_at(self, points: ArrayLike) -> NDArray[np.uint8]:
         """State (...,) at world points (..., 3); UNKNOWN outside of the array."""

@@ -1,7 +1,7 @@
 """Questions about lines and balls: is it free, is it clear of matter, what does a ray hit first.
 
-Two different questions on purpose. *Free* means flyable: no voxel touched is OCCUPIED or UNKNOWN. *Clear* is the paper's
-(section III-C): no occupied point in a cylinder or a ball; unknown space is no matter.
+Two different questions on purpose. *Free* means flyable: no voxel touched is OCCUPIED or UNKNOWN. *Clear* is the
+paper's (section III-C): no occupied point in a cylinder or a ball; unknown space is no matter.
 """
 
 import numba
@@ -14,8 +14,8 @@ Float64 = NDArray[np.float64]
 
 
 def segment_is_free(grid: OccupancyGrid, start: ArrayLike, end: ArrayLike) -> bool:
-    """True if every voxel that the segment from ``start`` (3,) to ``end`` (3,) passes through is FREE (Amanatides-Woo)."""
-    return path_is_free(grid, [start, end])
+    """True if every voxel that the segment from ``start`` (3,) to ``end`` (3,) passes through is FREE."""
+    return path_is_free(grid, np.stack([np.asarray(start, float), np.asarray(end, float)]))
 
 
 def path_is_free(grid: OccupancyGrid, path: ArrayLike) -> bool:
@@ -27,9 +27,9 @@ def path_is_free(grid: OccupancyGrid, path: ArrayLike) -> bool:
 def cylinder_is_clear(grid: OccupancyGrid, start: ArrayLike, end: ArrayLike, radius: float) -> bool:
     """The paper's visibility check: no occupied point in the cylinder of ``radius`` metres from ``start`` to ``end``.
 
-    An occupied voxel counts as the ball inscribed in it, so a wall counts from its face on. The cylinder's ends are flat
-    and go through ``start`` and ``end``: let ``end`` be where the ray reaches the object, so that the object's own matter
-    does not count. ``start`` and ``end``: (3,) world.
+    An occupied voxel counts as the ball inscribed in it, so a wall counts from its face on. The cylinder's ends are
+    flat and go through ``start`` and ``end``: let ``end`` be where the ray reaches the object, so that the object's
+    own matter does not count. ``start`` and ``end``: (3,) world.
     """
     a, b = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(b - a))
@@ -44,7 +44,7 @@ def cylinder_is_clear(grid: OccupancyGrid, start: ArrayLike, end: ArrayLike, rad
 
 
 def sphere_is_clear(grid: OccupancyGrid, point: ArrayLike, radius: float) -> bool:
-    """The paper's waypoint safety: no occupied voxel within ``radius`` metres of ``point`` (3,), measured to its faces."""
+    """The paper's waypoint safety: no occupied voxel's face within ``radius`` metres of ``point`` (3,)."""
     p = np.asarray(point, float)
     points = _occupied_centres(grid, p - radius - grid.resolution, p + radius + grid.resolution)  # (M, 3)
     gaps = np.maximum(np.abs(points - p) - grid.resolution / 2, 0)  # (M, 3) to the voxel's box
@@ -95,7 +95,7 @@ def _first_hits(state: NDArray[np.uint8], start: Float64, units: Float64, reach:
 
 @numba.njit(cache=True, nogil=True)
 def _walk(state: NDArray[np.uint8], start: Float64, unit: Float64, reach: float, subject: int) -> float:
-    """Amanatides & Woo 1987: walk the voxels of a ray, in voxel units; distance at which the walk stops, inf if it does not.
+    """Amanatides & Woo 1987, in voxel units: walk the voxels of a ray; the distance where the walk stops, else inf.
 
     ``subject`` FREE stops at the first voxel that is not free, outside of the grid included; OCCUPIED at the first one
     that is occupied, and never once the ray has left the grid.

@@ -1,8 +1,8 @@
 """A* on a voxel grid, and what of it is reachable at all.
 
-Neighbours are the 26 round a voxel; a diagonal step is taken only if the whole block of 4 or 8 voxels that it crosses is
-free. So the straight line between two neighbours of a path never touches a blocked voxel, and what is connected is what
-is 6-connected.
+Neighbours are the 26 round a voxel; a diagonal step is taken only if the whole block of 4 or 8 voxels that it crosses
+is free. So the straight line between two neighbours of a path never touches a blocked voxel, and what is connected is
+what is 6-connected.
 """
 
 import heapq
@@ -46,7 +46,7 @@ def clearance_weighted_path(
 
 
 def nearest_free(grid: OccupancyGrid, point: ArrayLike, max_distance: float) -> Float64:
-    """``point`` (3,) itself if it is free, else the centre (3,) of the nearest free voxel within ``max_distance`` metres.
+    """``point`` (3,) itself if it is free, else the nearest free voxel's centre (3,) within ``max_distance`` metres.
 
     Raises:
         PlanningError: nothing is free within that distance.
@@ -93,7 +93,7 @@ def _octile(dx: int, dy: int, dz: int) -> float:
     """Length of the shortest 26-connected way in empty space, in voxels."""
     a, b, c = abs(dx), abs(dy), abs(dz)
     high, low = max(a, b, c), min(a, b, c)
-    return high + (np.sqrt(2) - 1) * (a + b + c - high - low) + (np.sqrt(3) - np.sqrt(2)) * low
+    return float(high + (np.sqrt(2) - 1) * (a + b + c - high - low) + (np.sqrt(3) - np.sqrt(2)) * low)
 
 
 @numba.njit(cache=True, nogil=True)
@@ -137,7 +137,7 @@ def _search(
         for dx in range(-1, 2):
             for dy in range(-1, 2):
                 for dz in range(-1, 2):
-                    if dx == 0 and dy == 0 and dz == 0 or not _step_is_free(state, x, y, z, dx, dy, dz):
+                    if (dx == 0 and dy == 0 and dz == 0) or not _step_is_free(state, x, y, z, dx, dy, dz):
                         continue
                     u, v, t = x + dx, y + dy, z + dz
                     other = (u * ny + v) * nz + t

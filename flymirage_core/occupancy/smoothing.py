@@ -24,9 +24,9 @@ def smooth_path(
 ) -> Float64:
     """Collision-aware Laplacian smoothing of ``path`` (K, 3), ends kept (paper, section III-B).
 
-    In each iteration each inner point in turn moves towards the middle of its neighbours, unless one of its two segments
-    would then touch a voxel that is not free. So a path that is free stays free; give the inflated grid that it was
-    searched in.
+    In each iteration each inner point in turn moves towards the middle of its neighbours, unless one of its two
+    segments would then touch a voxel that is not free. So a path that is free stays free; give the inflated grid that
+    it was searched in.
     """
     cells = (np.asarray(path, float) - grid.origin) / grid.resolution  # (K, 3) voxels
     return _smooth(grid.state, cells, iterations, strength) * grid.resolution + grid.origin

@@ -41,11 +41,11 @@ SPREAD: Final = 2.5
 def occupancy_from_splats(cloud: GaussianCloud, centre: ArrayLike, settings: OccupancySettings) -> OccupancyGrid:
     """Free, occupied and unknown space of a world.
 
-    A voxel is OCCUPIED where `accumulated_opacity` passes the threshold and the island it belongs to (26-connected) is no
-    floater. It is FREE where a ball of `PASSAGE_RADIUS` that starts at c can get to (6-connected: a 26-connected fill
-    would slip diagonally through walls of one voxel). All else is UNKNOWN: the inside of solids, what lies outside, what
-    lies below the floor, and columns that have no ground: rooms that were cut from a larger capture have doorways and
-    windows that end in nothing, and nobody flies out of them.
+    A voxel is OCCUPIED where `accumulated_opacity` passes the threshold and the island it belongs to (26-connected)
+    is no floater. It is FREE where a ball of `PASSAGE_RADIUS` that starts at c can get to (6-connected: a
+    26-connected fill would slip diagonally through walls of one voxel). All else is UNKNOWN: the inside of solids,
+    what lies outside, what lies below the floor, and columns that have no ground: rooms that were cut from a larger
+    capture have doorways and windows that end in nothing, and nobody flies out of them.
 
     Args:
         cloud: cleaned Gaussians; world frame, z up, metres.
@@ -94,16 +94,17 @@ def accumulated_opacity(
 ) -> NDArray[np.float32]:
     """(X, Y, Z) share of its light that a ray loses on its way through each voxel, 0 to 1.
 
-    ``1 - exp(-sum_i alpha_i A_i w_i / resolution**2)``, where A_i = 2 pi s1 s2 is the area that Gaussian i covers when seen
-    from its flat side (s1, s2: its two largest deviations) and w_i the share of its mass in the voxel. So a flat wall splat
-    fills all the voxels that it passes through and no others, a speck of dust counts little, and haze counts by its depth.
+    ``1 - exp(-sum_i alpha_i A_i w_i / resolution**2)``, where A_i = 2 pi s1 s2 is the area that Gaussian i covers
+    when seen from its flat side (s1, s2: its two largest deviations) and w_i the share of its mass in the voxel. So a
+    flat wall splat fills all the voxels that it passes through and no others, a speck of dust counts little, and haze
+    counts by its depth.
     """
     depth = np.zeros(shape, np.float32)  # (X, Y, Z) optical depth
     _spread(
         cloud.means, cloud.quaternions, cloud.scales, cloud.opacities * _cross_section(cloud.scales) / resolution**2,
         origin, resolution, depth,
     )  # fmt: skip
-    return -np.expm1(-depth)
+    return np.asarray(-np.expm1(-depth), np.float32)
 
 
 def without_floaters(occupied: Bool, min_voxels: int) -> Bool:
@@ -127,19 +128,19 @@ def floor_layer(grid: OccupancyGrid, centre: NDArray[np.float64]) -> int | None:
 def groundless(grid: OccupancyGrid, centre: NDArray[np.float64]) -> Bool:
     """(X, Y, Z) where nothing lies below that could carry: under the floor, and over no ground at all.
 
-    The floor's holes are closed first (`FLOOR_GAP`): no scan sees the floor below every table. Where there is no flat
-    floor, each column's own lowest matter is its ground.
+    A column's ground is its lowest matter, or the floor where matter lies in the floor's layers, or where such matter
+    surrounds the column. Then ground that is higher than all round it, or missing, over less than twice `FLOOR_GAP` is
+    lowered to what is round it (grey opening): no scan sees the floor below every table.
     """
     occupied = grid.state == OCCUPIED
-    carried = np.logical_or.accumulate(occupied, axis=2)  # (X, Y, Z) matter at or below
+    height = occupied.shape[2]
+    ground = np.where(occupied.any(axis=2), occupied.argmax(axis=2), height)  # (X, Y) layer
     floor = floor_layer(grid, centre)
-    if floor is None:
-        return ~carried
-    ground = occupied[:, :, max(floor - 1, 0) : floor + 2].any(axis=2)  # (X, Y)
-    ground = ndimage.binary_fill_holes(_closed(ground, FLOOR_GAP / grid.resolution))
-    carried |= ground[:, :, None]
-    carried[:, :, : floor + 1] = False
-    return ~carried
+    if floor is not None:
+        seen = occupied[:, :, max(floor - 1, 0) : floor + 2].any(axis=2)  # (X, Y)
+        ground = np.where(ndimage.binary_fill_holes(seen), floor, np.maximum(ground, floor))
+    ground = ndimage.grey_opening(ground, footprint=_disc(FLOOR_GAP / grid.resolution), mode="nearest")
+    return np.asarray(np.arange(height) <= ground[:, :, None])
 
 
 def _reached(grid: OccupancyGrid, forbidden: Bool, centre: NDArray[np.float64]) -> Bool:
@@ -179,15 +180,10 @@ def _cropped(grid: OccupancyGrid) -> OccupancyGrid:
     return OccupancyGrid(np.ascontiguousarray(part), grid.origin + first * grid.resolution, grid.resolution)
 
 
-def _closed(mask: Bool, radius: float) -> Bool:
-    """Morphological closing of a plane by a disc of ``radius`` cells, by two distance transforms."""
-    pad = int(np.ceil(radius)) + 1
-    padded = np.pad(mask, pad)
-    if not mask.any():
-        return mask
-    grown = ndimage.distance_transform_edt(~padded) <= radius
-    closed = ndimage.distance_transform_edt(grown) > radius
-    return np.asarray(closed[pad:-pad, pad:-pad] | mask)
+def _disc(radius: float) -> Bool:
+    """Cells (2m + 1, 2m + 1) whose centre lies within ``radius`` cells of the middle one."""
+    steps = np.arange(-int(radius), int(radius) + 1)
+    return np.asarray(steps[:, None] ** 2 + steps**2 <= radius**2)
 
 
 def _cross_section(scales: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -206,7 +202,7 @@ def _axis_deviation(cloud: GaussianCloud) -> NDArray[np.float32]:
             [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
         ]
     )  # (3, 3, N)
-    return np.sqrt(((rows * cloud.scales.T[None]) ** 2).sum(axis=1)).T.astype(np.float32)
+    return np.asarray(np.sqrt(((rows * cloud.scales.T[None]) ** 2).sum(axis=1)).T, np.float32)
 
 
 def _weighted_quantile(values: NDArray[np.float32], weights: NDArray[np.float32], share: float) -> float:
