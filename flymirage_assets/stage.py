@@ -10,7 +10,7 @@ import importlib.metadata
 import inspect
 import json
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -41,11 +41,15 @@ class Stage:
     """What a stage may use besides its inputs: the scene, its declared settings, the tools, a private folder."""
 
     scene: str
-    origin: SceneOrigin
     settings: Settings  # only the declared sections answer
     tools: Tools
     store: Store
     scratch: Path
+
+    @property
+    def origin(self) -> SceneOrigin:
+        """What the scene is; a key that nobody registered (typed in the UI) is a generated scene."""
+        return self.store.origin(self.scene) or SceneOrigin(scene=self.scene, kind="generated")
 
     def rng(self, stage: str, index: int = 0) -> np.random.Generator:
         return rng(self.scene, stage, index)
@@ -89,24 +93,30 @@ class ProductAsset:
         """The declared version and a hash of the settings it reads: what makes a product stale."""
         return f"{self.version}-{_hash(self.section_values)[:8]}"
 
-    def materialise(self, store: Store, scene: str, inputs: Mapping[str, Any], log: Callable[[str], None]) -> Commit:
-        """Compute the product of ``scene``, or find that the current one is still right."""
-        origin = store.origin(scene) or SceneOrigin(scene=scene, kind="generated")
+    def materialise(
+        self, store: Store, scene: str, inputs: Mapping[str, Any], digests: dict[str, str], log: Callable[[str], None]
+    ) -> Commit:
+        """Compute the product of ``scene``, or find that the current one is still right.
+
+        ``digests`` names the exact bytes of everything that goes in: upstream products, or the scene's registration.
+        """
         tools = choose_tools(self.settings)
         tool_names = {port: getattr(tools, port).name for port in self.tools}
-        digests = {asset: record.digest for asset in inputs if (record := store.current(asset, scene))}
-        input_hash = _hash([self.code_version, digests, tool_names, None if inputs else origin.model_dump()])
+        input_hash = _hash([self.code_version, digests, tool_names])
         current = store.current(self.name, scene)
         if current is not None and current.input_hash == input_hash and store.is_whole(current):
             log(f"{self.name} of {scene}: inputs, code and settings are unchanged, nothing to do")
             return Commit(current)
         started = time.perf_counter()
-        with store.scratch() as scratch, listening(self._listener(log)):
+        report = self._listener(log)
+        report("", 0, 1)
+        with store.scratch() as scratch, listening(report):
             declared = cast(Settings, _Declared(self.settings, self.sections))
-            stage = Stage(scene, origin, declared, tools, store, scratch)
+            stage = Stage(scene, declared, tools, store, scratch)
             product = self.compute(stage, **inputs)
             staged = store.stage(product)
             preview = jpeg_under(self.draw(stage, product, **inputs), PREVIEW_BYTES)
+        report("", 1, 1)
         seconds = time.perf_counter() - started
         return Commit(self._record(scene, staged, input_hash, digests, tool_names, product, seconds), staged, preview)
 
@@ -142,8 +152,8 @@ class ProductAsset:
 
         def report(what: str, done: int, total: int) -> None:
             if outer is not None:
-                outer(f"{self.name}: {what}", done, total)
-            elif done and done in (total // 4, total // 2, total * 3 // 4, total):
+                outer(f"{self.name} {what}".strip(), done, total)
+            elif what and done and done in (total // 4, total // 2, total * 3 // 4, total):
                 log(f"{self.name}: {done} of {total} {what}")
 
         return report
@@ -182,16 +192,25 @@ def product_asset(
             metadata={"product": hints["return"].__name__},
         )
         def materialise(context: dg.AssetExecutionContext, **inputs: Any) -> Any:
-            manager = cast(ProductIOManager, context.resources.io_manager)
+            store = cast(ProductIOManager, context.resources.io_manager).store
             with one_clear_sentence():
-                commit = stage.materialise(
-                    manager.store, check_scene_key(context.partition_key), inputs, context.log.info
-                )
-            return materialize_result(commit, manager.store)
+                scene = check_scene_key(context.partition_key)
+                digests = upstream_digests(store, scene, upstream)
+                commit = stage.materialise(store, scene, inputs, digests, context.log.info)
+            return materialize_result(commit, store)
 
         return materialise
 
     return decorate
+
+
+def upstream_digests(store: Store, scene: str, upstream: Iterable[str]) -> dict[str, str]:
+    """Content hashes of the current upstream products; of the scene's registration where there are none."""
+    records = {asset: store.current(asset, scene) for asset in upstream}
+    if not records:
+        origin = store.origin(scene)
+        return {"origin": "" if origin is None else _hash(origin.model_dump(mode="json"))}
+    return {asset: record.digest for asset, record in records.items() if record is not None}
 
 
 class one_clear_sentence:  # noqa: N801 - reads as what it does at the place of use

@@ -90,4 +90,6 @@ def _parse(kind: type[D], text: str, where: str) -> D:
     except ValidationError as error:
         first = error.errors()[0]
         field = ".".join(str(part) for part in first["loc"]) or "the document"
-        raise ProductError(f"{where} cannot be read: {field}: {first['msg']}; delete it and materialise again") from error
+        raise ProductError(
+            f"{where} cannot be read: {field}: {first['msg']}; delete it and materialise again"
+        ) from error
