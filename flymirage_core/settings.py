@@ -151,12 +151,16 @@ class VerdictSettings(Section):
     min_brightness: Positive = 20.0
     max_brightness: Positive = 235.0
     min_target_visible: Positive = 0.5
-    """Least share of sampled frames in which the target's centre is in the picture and not occluded."""
+    """Least share of sampled frames in which the target is in the picture and not hidden."""
     max_final_angle_deg: Positive = 25.0
     """Most between the final view's axis and the target's centre."""
     min_progress: Positive = 0.3
     """Least fall of the distance to the target, as a share of its start."""
     min_clearance: Positive = 0.15
+    max_limit_ratio: Positive = 1.1
+    """Most that the sampled flight may exceed the planner's speed, acceleration, jerk or yaw rate by, as a factor."""
+    max_end_error: Positive = 0.3
+    """Most between the flight's end and its target point."""
     frame_step: Count = 30
     """The paper samples every 30th frame of a 30 Hz video; at another rate the same seconds are meant."""
 

@@ -47,7 +47,9 @@ class Prompts:
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        pq.write_table(pa.Table.from_pylist([asdict(p) for p in self], schema=PROMPT_SCHEMA), folder / "prompts.parquet")
+        pq.write_table(
+            pa.Table.from_pylist([asdict(p) for p in self], schema=PROMPT_SCHEMA), folder / "prompts.parquet"
+        )
 
     @staticmethod
     def load(folder: Path) -> "Prompts":

@@ -81,9 +81,13 @@ class QualityVerdicts:
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
-        pq.write_table(pa.Table.from_pylist([asdict(v) for v in self], schema=VERDICT_SCHEMA), folder / "verdicts.parquet")
+        pq.write_table(
+            pa.Table.from_pylist([asdict(v) for v in self], schema=VERDICT_SCHEMA), folder / "verdicts.parquet"
+        )
 
     @staticmethod
     def load(folder: Path) -> "QualityVerdicts":
         rows = pq.read_table(folder / "verdicts.parquet", schema=VERDICT_SCHEMA).to_pylist()
-        return QualityVerdicts(tuple(Verdict(**{**r, "gates": tuple(GateResult(**g) for g in r["gates"])}) for r in rows))
+        return QualityVerdicts(
+            tuple(Verdict(**{**r, "gates": tuple(GateResult(**g) for g in r["gates"])}) for r in rows)
+        )
