@@ -1,4 +1,4 @@
-"""The command line. It runs the same Dagster assets on the same instance as the UI, in one process, with progress bars."""
+"""The command line: the same Dagster assets on the same instance as the UI, in one process, with progress bars."""
 
 import itertools
 import sys

@@ -1,4 +1,4 @@
-"""One picture for each product: what a person wants to see of it in the UI. Composition only; drawing is in the core."""
+"""One picture for each product: what a person wants to see of it. Composition only; drawing is in the core."""
 
 from collections.abc import Iterable
 
@@ -16,7 +16,7 @@ from flymirage_core.navigation.trajectories import Trajectories
 from flymirage_core.occupancy.grid import OccupancyGrid
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.pictures.box_overlay import draw_boxes
-from flymirage_core.pictures.canvas import INK, Picture, contact_sheet, hue, stacked, text_card
+from flymirage_core.pictures.canvas import INK, Picture, contact_sheet, hue, resized, stacked, text_card
 from flymirage_core.pictures.floor_plan import FloorPlan
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.frames import FlightFrames, Frames
@@ -64,7 +64,7 @@ def targets(stage: Stage, product: Targets, orbit_boxes: BoxMap, world: World) -
     plan = _plan(grid, world.centre)
     plan.boxes(orbit_boxes)
     for box in product.boxes:
-        plan.path([world.centre, box.centre], GOAL, 1)
+        plan.path(np.stack([world.centre, box.centre]), GOAL, 1)
         plan.dot(box.centre, GOAL)
     plan.dot(world.centre, START)
     names = ", ".join(b.label for b in product.boxes) or "none: every object is near enough"
@@ -169,8 +169,10 @@ def _boxes_in(boxes: BoxMap, orbit_renders: PosedViews, start: int) -> Picture:
     """All boxes drawn into four views of the middle elevation, a quarter turn apart."""
     step = max(1, len(orbit_renders) // (4 * len(set(orbit_renders.groups))))
     views: list[View] = [orbit_renders[(start + i * step) % len(orbit_renders)] for i in range(4)]
-    drawn = [draw_boxes(cv2.resize(v.picture.rgb, None, fx=2, fy=2), _doubled(v.camera), boxes) for v in views]
-    return contact_sheet([d.astype(np.uint8) for d in drawn], [f"{len(boxes)} boxes"] + [""] * 3, columns=2, width=480)
+    drawn = [
+        draw_boxes(resized(v.picture.rgb, 2 * v.camera.intrinsics.width), _doubled(v.camera), boxes) for v in views
+    ]
+    return contact_sheet(drawn, [f"{len(boxes)} boxes"] + [""] * 3, columns=2, width=480)
 
 
 def _doubled(camera: Camera) -> Camera:

@@ -1,4 +1,4 @@
-"""`product_asset`: turns a function of the paper's shape - products in, one product out - into a partitioned Dagster asset.
+"""`product_asset`: turns a function of the paper's shape, products in and one out, into a partitioned Dagster asset.
 
 Around the function it does what every stage needs and none should repeat: the early cut-off (same code, settings and
 inputs: nothing to do), provenance, the content hash as data version, numbers and a picture as metadata.
@@ -142,7 +142,7 @@ class ProductAsset:
             inputs=inputs,
             tools=tools,
             files=staged.files,
-            summary=product.summary(),
+            summary=dict(product.summary()),
             seconds=round(seconds, 3),
             created_at=datetime.now(UTC).isoformat(timespec="seconds"),
         )
@@ -171,8 +171,8 @@ def product_asset(
 ) -> Callable[[Compute], dg.AssetsDefinition]:
     """Make a scene-partitioned asset of ``function(stage, **upstream products) -> product``.
 
-    ``sections`` names the settings it reads, ``tools`` the ports it uses, ``draw(stage, product, **upstream)`` makes the
-    picture that a person wants to see of it. The function's docstring becomes the asset's description.
+    ``sections`` names the settings it reads, ``tools`` the ports it uses, ``draw(stage, product, **upstream)`` makes
+    the picture that a person wants to see of it. The function's docstring becomes the asset's description.
     """
 
     def decorate(function: Compute) -> dg.AssetsDefinition:

@@ -1,1 +1,1 @@
-"""FlyMirage's plain library: numpy in, numpy out. It knows nothing of Dagster, of services or of where files are kept."""
+"""FlyMirage's plain library: numpy in, numpy out. It knows nothing of Dagster, services or where files are kept."""

@@ -1,8 +1,8 @@
 """One settings object for everything, validated at start. Defaults are the paper's, with symbol and section.
 
 Every field can be set by an environment variable (``FLYMIRAGE_TASKS__SETS=20``) or in ``flymirage.toml`` beside the
-working directory. Lengths in metres, angles in radians except fields ending in ``_deg``. A stage's section is part of its
-code version: changing it makes exactly that stage, and what follows from it, stale.
+working directory. Lengths in metres, angles in radians except fields ending in ``_deg``. A stage's section is part of
+its code version: changing it makes exactly that stage, and what follows from it, stale.
 """
 
 from typing import Annotated, Literal

@@ -1,6 +1,6 @@
 """The one seam through which tests break the store: a named instant at which a process can be made to die.
 
-``FLYMIRAGE_FAULT=NAME:N`` kills the process (SIGKILL, as a power cut would) when it passes the point NAME the N-th time.
+``FLYMIRAGE_FAULT=NAME:N`` kills the process (SIGKILL, as a power cut would) when it passes NAME the N-th time.
 """
 
 import os

@@ -13,7 +13,7 @@ from resources.store import ALL_SCENES, Staged, Store, open_store
 
 @dataclass(frozen=True)
 class Commit:
-    """What an asset hands over: a staged product with its record, or (``staged`` None) the record that stays current."""
+    """What an asset hands over: a staged product with its record; without ``staged``, the record that stays current."""
 
     record: ProductRecord
     staged: Staged | None = None

@@ -142,7 +142,7 @@ class Store:
             (staged.folder / PREVIEW_NAME).write_bytes(preview)
         target = self._product(record.asset, record.scene)
         if self.is_local:
-            _move_folder(staged.folder, Path(os.fspath(target / record.digest)))
+            _move_folder(staged.folder, Path(str(target / record.digest)))
         else:
             names = [*staged.files, PREVIEW_NAME] if preview is not None else list(staged.files)
             for name in names:
@@ -171,7 +171,7 @@ class Store:
     def _staging_folder(self) -> Path:
         if not self.is_local:
             return Path(tempfile.mkdtemp(prefix="flymirage-"))
-        root = Path(os.fspath(self.base)) / "staging"
+        root = Path(str(self.base)) / "staging"
         root.mkdir(parents=True, exist_ok=True)
         for old in root.iterdir():
             if time.time() - old.stat().st_mtime > STALE_STAGING_SECONDS:
@@ -183,7 +183,7 @@ class Store:
     def _local(self, folder: UPath, names: list[str]) -> Path:
         """``folder`` itself on a disk; else a cached copy (content-addressed, so never stale)."""
         if self.is_local:
-            return Path(os.fspath(folder))
+            return Path(str(folder))
         cache = Path(tempfile.gettempdir()) / "flymirage-cache" / hashlib.sha256(str(folder).encode()).hexdigest()[:32]
         for name in names:
             path = cache / name
@@ -199,7 +199,7 @@ class Store:
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_text(text)
             return
-        local = Path(os.fspath(path))
+        local = Path(str(path))
         local.parent.mkdir(parents=True, exist_ok=True)
         part = local.with_name(f"{local.name}.{uuid.uuid4().hex}")
         with part.open("w") as file:
@@ -211,7 +211,7 @@ class Store:
 
     def _move_file(self, source: Path, target: UPath) -> None:
         if self.is_local:
-            local = Path(os.fspath(target))
+            local = Path(str(target))
             local.parent.mkdir(parents=True, exist_ok=True)
             source.replace(local)
         else:
@@ -227,10 +227,10 @@ def open_store(base: str) -> Store:
     store = Store(base)
     if store.is_local:
         try:
-            Path(os.fspath(store.base)).mkdir(parents=True, exist_ok=True)
+            Path(str(store.base)).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(
-                f"the store {base!r} cannot be made ({error.strerror}): set FLYMIRAGE_STORE to a folder you may write to"
+                f"the store {base!r} cannot be made ({error.strerror}): set FLYMIRAGE_STORE to a writable folder"
             ) from error
     return store
 

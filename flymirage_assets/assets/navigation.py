@@ -24,7 +24,7 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         version="1", group=group, settings=settings, sections=["occupancy", "tasks"], draw=previews.task_sets
     )
     def task_sets(stage: Stage, world: World, boxes: BoxMap) -> TaskSets:
-        """N_s sets of N_o targets, each accepted by position, visibility, waypoint-safety and 2-10 m distance checks."""
+        """N_s sets of N_o targets, each accepted by position, visibility, waypoint-safety and distance checks."""
         grid = occupancy_from_splats(world.cloud, world.centre, stage.settings.occupancy)
         return generate_task_sets(grid, boxes, world.centre, stage.settings.tasks, stage.rng("task_sets"))
 
@@ -32,7 +32,7 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         version="1", group=group, settings=settings, sections=["occupancy", "planner"], draw=previews.trajectories
     )
     def trajectories(stage: Stage, world: World, boxes: BoxMap, task_sets: TaskSets) -> Trajectories:
-        """EGO-Planner flights from target to target: 6-DoF states with velocity, acceleration, body rates, clearance."""
+        """EGO-Planner flights from target to target: 6-DoF states with velocity, body rates and clearance."""
         grid = occupancy_from_splats(world.cloud, world.centre, stage.settings.occupancy)
         return fly_task_sets(task_sets, grid, boxes, stage.settings.planner, stage.rng("trajectories"))
 
@@ -62,7 +62,7 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
     def prompts(
         stage: Stage, frames: Frames, boxes: BoxMap, trajectories: Trajectories, quality_verdict: QualityVerdicts
     ) -> Prompts:
-        """Up to three instructions for each kept flight: object-centred, relative, appearance; none of them ambiguous."""
+        """Up to three instructions for each kept flight: object-centred, relative, appearance; none ambiguous."""
         return stage.tools.prompter.write(stage.scene, boxes, trajectories, quality_verdict)
 
     return [task_sets, trajectories, frames, quality_verdict, prompts]

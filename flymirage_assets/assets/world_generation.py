@@ -16,7 +16,7 @@ def world_generation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         version="1", group="world_generation", settings=settings, tools=["scene_writer"], draw=previews.description
     )
     def description(stage: Stage) -> SceneDescription:
-        """The scene's structured specification and prose, from a taxonomy pick; for an imported world, its provenance."""
+        """The scene's structured specification and prose, from a taxonomy pick; of an import, its provenance."""
         if stage.origin.kind == "imported":
             return describe_import(stage.origin)
         return stage.tools.scene_writer.describe(stage.scene)

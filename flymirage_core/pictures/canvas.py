@@ -22,7 +22,7 @@ def resized(picture: Picture, width: int) -> Picture:
 
 
 def put_text(picture: Picture, text: str, at: tuple[int, int], scale: float = 0.45, colour: Colour = INK) -> None:
-    """Write one line (baseline's left end ``at`` x, y) into ``picture``, in place; other letters than ASCII become '?'."""
+    """Write one line (baseline's left end ``at`` x, y) into ``picture``, in place; what is not ASCII becomes '?'."""
     plain = text.encode("ascii", "replace").decode()
     cv2.putText(picture, plain, at, FONT, scale, colour, 1, cv2.LINE_AA)
 

@@ -43,7 +43,8 @@ class FloorPlan:
     def pixel(self, points: ArrayLike) -> NDArray[np.int32]:
         """Pixels (N, 2) of world points (N, 2 or 3)."""
         xy = (np.atleast_2d(np.asarray(points, float))[:, :2] - self.lower) * self.scale
-        return np.rint(np.stack([xy[:, 0], self.picture.shape[0] - xy[:, 1]], axis=1)).astype(np.int32)
+        pixels: NDArray[np.int32] = np.rint(np.stack([xy[:, 0], self.picture.shape[0] - xy[:, 1]], 1)).astype(np.int32)
+        return pixels
 
     def path(self, points: ArrayLike, colour: Colour, thickness: int = 2) -> None:
         cv2.polylines(self.picture, [self.pixel(points)], False, colour, thickness, cv2.LINE_AA)

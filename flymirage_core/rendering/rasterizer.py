@@ -26,6 +26,7 @@ class Rendering:
 class Rasterizer(Protocol):
     """Renders a cloud from many cameras; answers in the cameras' order, lazily, so that frames can be streamed."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     def render(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator[Rendering]: ...
