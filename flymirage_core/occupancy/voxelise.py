@@ -139,7 +139,9 @@ def groundless(grid: OccupancyGrid, centre: NDArray[np.float64]) -> Bool:
     if floor is not None:
         seen = occupied[:, :, max(floor - 1, 0) : floor + 2].any(axis=2)  # (X, Y)
         ground = np.where(ndimage.binary_fill_holes(seen), floor, np.maximum(ground, floor))
-    ground = ndimage.grey_opening(ground, footprint=_disc(FLOOR_GAP / grid.resolution), mode="nearest")
+    disc = _disc(FLOOR_GAP / grid.resolution)
+    pad = len(disc)  # outside of the grid there is no ground, and the opening must see so
+    ground = ndimage.grey_opening(np.pad(ground, pad, constant_values=height), footprint=disc)[pad:-pad, pad:-pad]
     return np.asarray(np.arange(height) <= ground[:, :, None])
 
 
