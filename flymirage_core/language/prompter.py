@@ -30,7 +30,6 @@ from flymirage_core.language.scene_relations import Relation, Side, StartPose, T
 from flymirage_core.language.verdicts import QualityVerdicts
 from flymirage_core.language.wording import Landmarks, sentence
 from flymirage_core.navigation.trajectories import Flight, Trajectories
-from flymirage_core.rendering.frames import Frames
 from flymirage_core.scene.keys import rng
 
 NEAREST_LANDMARKS = 8
@@ -48,9 +47,7 @@ class Prompter(Protocol):
 
     name: str
 
-    def write(
-        self, scene: str, frames: Frames, flights: Trajectories, boxes: BoxMap, verdicts: QualityVerdicts
-    ) -> Prompts: ...
+    def write(self, scene: str, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts) -> Prompts: ...
 
 
 @dataclass(frozen=True)
@@ -63,13 +60,12 @@ class OfflinePrompter:
 
     name: str = "offline 1"
 
-    def write(
-        self, scene: str, frames: Frames, flights: Trajectories, boxes: BoxMap, verdicts: QualityVerdicts
-    ) -> Prompts:
+    def write(self, scene: str, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts) -> Prompts:
+        """Prompts in the order of flights, then kinds; a kept flight of which nothing sure can be said has none."""
         kept = set(verdicts.kept)
         written: list[Prompt] = []
         for flight in (f for f in flights if f.flight_id in kept):
-            start = StartPose.of_camera(frames.flight(flight.flight_id).cameras()[0])
+            start = StartPose.of_flight(flight)
             written += self._flight_prompts(scene, flight, boxes, start)
         return Prompts(tuple(written))
 
@@ -151,7 +147,7 @@ _SEEN_FROM_START = (Relation.IN_FRONT_OF, Relation.BEHIND, Relation.LEFT_OF, Rel
 
 
 def _appearance(target: ObjectBox, start: StartPose) -> Iterator[Meaning]:
-    """Colour, proportions, then size among its like; always something seen on the thing itself, at last with its side."""
+    """Colour, proportions, then size among its like; always something seen on the thing, at last with its side too."""
     noun = Noun(target.label)
     colours: list[tuple[Term, ...]] = [(Colour(target.colour),)] if target.colour else []
     shapes: list[tuple[Term, ...]] = [(Shaped(s),) for s in Shape if shaped(s, target) is Truth.YES]

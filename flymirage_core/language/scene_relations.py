@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.annotation.boxes import ObjectBox
-from flymirage_core.rendering.camera import Camera
+from flymirage_core.navigation.trajectories import Flight
 
 SUPPORT_GAP = (0.12, 0.3)
 """Metres between a thing's underside and the top of what it stands on: about twice the error of a box's faces."""
@@ -78,15 +78,15 @@ class Side(Enum):
 
 @dataclass(frozen=True)
 class StartPose:
-    """Where the drone is when it reads the prompt: its camera in the first frame."""
+    """Where the drone is when it reads the prompt, before it moves; its camera looks along its yaw."""
 
     position: tuple[float, float, float]
     yaw: float  # radians, ENU: counter-clockwise from +x
 
     @staticmethod
-    def of_camera(camera: Camera) -> "StartPose":
-        x, y, z = (float(v) for v in camera.position)
-        return StartPose((x, y, z), float(np.arctan2(camera.forward[1], camera.forward[0])))
+    def of_flight(flight: Flight) -> "StartPose":
+        x, y, z = (float(v) for v in flight.positions[0])
+        return StartPose((x, y, z), float(flight.yaws[0]))
 
     def bearing(self, box: ObjectBox) -> float:
         """Angle from straight ahead to the box's centre, radians in (-pi, pi], positive to the left."""
@@ -131,7 +131,7 @@ def on(thing: ObjectBox, landmark: ObjectBox) -> Truth:
 
 
 def under(thing: ObjectBox, landmark: ObjectBox) -> Truth:
-    """It is the smaller, within the outline and lower: below the underside, or between the legs of a thing open beneath."""
+    """It is smaller, within the outline, and below the underside or between the legs of a thing open beneath."""
     smaller = Truth.YES if _area(thing) <= _area(landmark) else Truth.NO
     within = min(at_most(_outside_outline(thing, landmark), OVERHANG), smaller)
     clear = min(at_most(thing.top - landmark.bottom, UNDER_RISE), at_most(landmark.bottom - thing.top, ABOVE_GAP))
