@@ -1,0 +1,52 @@
+"""What Dagster loads: the thirteen products and the data set, by way of workspace.yaml as `make dev` does."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import dagster as dg
+import pytest
+
+from flymirage_assets.definitions import build_definitions
+from flymirage_assets.home import BOOT_TAG, PID_TAG, close_dead_runs, process_tags
+from flymirage_assets.report import SCENE_PRODUCTS
+from flymirage_core.settings import PlannerSettings, Settings
+
+
+def test_the_assets_are_the_products_of_the_paper() -> None:
+    keys = {key.path[-1] for key in build_definitions(Settings()).resolve_all_asset_keys()}
+    assert keys == {*SCENE_PRODUCTS, "dataset", "lerobot"}
+
+
+def test_a_setting_changes_the_code_version_of_its_stage_alone() -> None:
+    def versions(settings: Settings) -> dict[str, str | None]:
+        graph = build_definitions(settings).resolve_asset_graph()
+        return {key.path[-1]: graph.get(key).code_version for key in graph.get_all_asset_keys()}
+
+    plain, faster = versions(Settings()), versions(Settings(planner=PlannerSettings(max_speed=1.0)))
+    assert {name for name in plain if plain[name] != faster[name]} == {"trajectories"}
+
+
+def test_the_workspace_loads_as_dagster_dev_loads_it() -> None:
+    root = Path(__file__).parents[2]
+    command = [sys.executable, "-m", "dagster", "definitions", "validate", "-w", "workspace.yaml"]
+    outcome = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=120, check=False)
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+
+
+@pytest.mark.parametrize(("tags", "closed"), [(process_tags(), 0), ({PID_TAG: "1", BOOT_TAG: "another boot"}, 1)])
+def test_runs_of_killed_processes_are_closed_and_others_left(tags: dict[str, str], closed: int) -> None:
+    with dg.instance_for_test() as instance:
+
+        @dg.op
+        def nothing() -> None: ...
+
+        @dg.job
+        def job() -> None:
+            nothing()
+
+        run = instance.create_run_for_job(job, status=dg.DagsterRunStatus.STARTED, tags=tags)
+        assert close_dead_runs(instance) == closed
+        stored = instance.get_run_by_id(run.run_id)
+        assert stored is not None
+        assert (stored.status == dg.DagsterRunStatus.FAILURE) == bool(closed)
