@@ -7,6 +7,7 @@ from typing import Any
 import dagster as dg
 from pydantic import PrivateAttr
 
+from flymirage_core.errors import FlyMirageError
 from resources.records import ProductRecord
 from resources.store import ALL_SCENES, Staged, Store, open_store
 
@@ -42,4 +43,7 @@ class ProductIOManager(dg.ConfigurableIOManager):
     def load_input(self, context: dg.InputContext) -> Any:
         asset = context.asset_key.path[-1]
         scene = context.partition_key if context.has_partition_key else ALL_SCENES
-        return context.dagster_type.typing_type.load(self.store.folder(asset, scene))
+        try:
+            return context.dagster_type.typing_type.load(self.store.folder(asset, scene))
+        except FlyMirageError as error:
+            raise dg.Failure(description=str(error), allow_retries=False) from error
