@@ -40,7 +40,9 @@ class GaussianCloud:
             if getattr(self, name).dtype != np.float32:
                 raise WorldError(f"Gaussian cloud: {name} is {getattr(self, name).dtype}, expected float32")
         if self.sh.shape[1] not in (1, 4, 9, 16):
-            raise WorldError(f"Gaussian cloud: {self.sh.shape[1]} SH coefficients, expected 1, 4, 9 or 16 (degree 0 to 3)")
+            raise WorldError(
+                f"Gaussian cloud: {self.sh.shape[1]} SH coefficients, expected 1, 4, 9 or 16 (degree 0 to 3)"
+            )
 
     def __len__(self) -> int:
         return len(self.means)

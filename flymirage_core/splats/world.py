@@ -1,14 +1,19 @@
 """`World`, the product of the `world` asset: a cleaned splat cloud in the metric z-up frame, and its centre c."""
 
 import json
-from dataclasses import asdict, dataclass, field
+import shutil
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flymirage_core.errors import ProductError, WorldError
 from flymirage_core.splats.cloud import GaussianCloud
+from flymirage_core.splats.files import read_cloud, write_ply
+
+SCHEMA: Final = 1
 
 
 @dataclass(frozen=True)
@@ -27,9 +32,30 @@ class World:
         return {"gaussians": len(self.cloud), "sh_degree": self.cloud.sh_degree, **self.notes}
 
     def save(self, folder: Path) -> None:
-        """``world.ply`` (standard 3DGS, read by SuperSplat and gsplat), ``world.json``, ``collider.glb`` if there is one."""
-        raise NotImplementedError
+        """``world.ply`` (3DGS, as SuperSplat and gsplat read it), ``world.json``, ``collider.glb`` if there is one."""
+        folder.mkdir(parents=True, exist_ok=True)
+        write_ply(self.cloud, folder / "world.ply")
+        if self.collider is not None:
+            shutil.copyfile(self.collider, folder / "collider.glb")
+        document = {"schema": SCHEMA, "centre": [float(x) for x in self.centre], "notes": self.notes}
+        (folder / "world.json").write_text(json.dumps(document, indent=2, sort_keys=True) + "\n", encoding="utf-8")
 
     @staticmethod
     def load(folder: Path) -> "World":
-        raise NotImplementedError
+        """Read back what `save` wrote; raises `ProductError` if it is not whole or of another schema."""
+        try:
+            document = json.loads((folder / "world.json").read_text(encoding="utf-8"))
+            schema = document["schema"]
+            if schema != SCHEMA:
+                raise ProductError(
+                    f"{folder}: the world has schema {schema!r}, this code reads {SCHEMA}; make it again"
+                )
+            centre, notes = np.array(document["centre"], np.float64), dict(document["notes"])
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise ProductError(f"{folder}: world.json is missing or torn ({error}); make the world again") from error
+        try:
+            cloud = read_cloud(folder / "world.ply")
+        except WorldError as error:
+            raise ProductError(f"{error}; make the world again") from error
+        collider = folder / "collider.glb"
+        return World(cloud, centre, notes, collider if collider.exists() else None)
