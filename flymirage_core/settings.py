@@ -94,7 +94,11 @@ class AnnotationSettings(Section):
     """Boxes from posed RGB-D; the distance limit of the second pass is d_th1 of `TargetSettings`."""
 
     voxel: Positive = 0.03
+    """Edge of the voxels in which pixels of all views are averaged."""
     fusion_iou: Positive = 0.3
+    """Detections of a per-view detector that overlap by this are one object."""
+    min_detections: Count = 4
+    """An object of a per-view detector must be seen in this many views."""
 
 
 class TaskSettings(Section):
