@@ -47,7 +47,7 @@ class Camera:
         return self.T_world_camera[:3, 2]  # (3,) unit
 
     @cached_property
-    def T_camera_world(self) -> Float64:
+    def T_camera_world(self) -> Float64:  # noqa: N802 - the field's name for it
         rotation = self.T_world_camera[:3, :3].T
         inverse = np.eye(4)
         inverse[:3, :3] = rotation

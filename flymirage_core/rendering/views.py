@@ -18,7 +18,7 @@ DEPTH_UNIT = 0.001
 
 
 def depth_to_millimetres(depth: np.ndarray) -> np.ndarray:
-    """float32 metres (H, W) -> uint16 millimetres (H, W), rounded; what is not finite or too far becomes 0, no return."""
+    """float32 metres (H, W) -> uint16 millimetres (H, W), rounded; what is not finite or too far becomes 0."""
     millimetres = np.rint(np.nan_to_num(depth, nan=0.0, posinf=0.0, neginf=0.0) / DEPTH_UNIT)
     return np.where((millimetres > 0) & (millimetres <= 65535), millimetres, 0).astype(np.uint16)
 
@@ -80,10 +80,10 @@ class PosedViews:
         table = pd.read_parquet(folder / "views.parquet")
         cameras = tuple(
             Camera(
-                Intrinsics(int(r.width), int(r.height), r.fx, r.fy, r.cx, r.cy),
-                np.array(r.T_world_camera, float).reshape(4, 4),
+                Intrinsics(r["width"], r["height"], r["fx"], r["fy"], r["cx"], r["cy"]),
+                np.array(r["T_world_camera"], float).reshape(4, 4),
             )
-            for r in table.itertuples()
+            for r in table.to_dict("records")
         )
         return PosedViews(folder, cameras, tuple(table["group"]))
 
@@ -93,7 +93,9 @@ def write_picture(folder: Path, index: int, picture: Rendering) -> None:
     stem = f"{index:04d}"
     _write(folder / f"{stem}_rgb.jpg", picture.rgb[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, 95])
     _write(folder / f"{stem}_depth.png", depth_to_millimetres(picture.depth), [cv2.IMWRITE_PNG_COMPRESSION, 1])
-    _write(folder / f"{stem}_alpha.png", np.rint(picture.alpha * 255).astype(np.uint8), [cv2.IMWRITE_PNG_COMPRESSION, 1])
+    _write(
+        folder / f"{stem}_alpha.png", np.rint(picture.alpha * 255).astype(np.uint8), [cv2.IMWRITE_PNG_COMPRESSION, 1]
+    )
 
 
 def read_picture(folder: Path, index: int) -> Rendering:
@@ -102,7 +104,11 @@ def read_picture(folder: Path, index: int) -> Rendering:
     rgb = _read(folder / f"{stem}_rgb.jpg", cv2.IMREAD_COLOR)[:, :, ::-1]
     depth = _read(folder / f"{stem}_depth.png", cv2.IMREAD_UNCHANGED)
     alpha = _read(folder / f"{stem}_alpha.png", cv2.IMREAD_UNCHANGED)
-    return Rendering(np.ascontiguousarray(rgb), depth.astype(np.float32) * DEPTH_UNIT, alpha.astype(np.float32) / 255)
+    return Rendering(
+        np.ascontiguousarray(rgb),
+        depth.astype(np.float32) * np.float32(DEPTH_UNIT),
+        alpha.astype(np.float32) / np.float32(255),
+    )
 
 
 def _write(path: Path, image: np.ndarray, options: list[int]) -> None:

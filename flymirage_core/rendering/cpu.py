@@ -1,0 +1,211 @@
+"""`CpuRasterizer`: Gaussians to RGB, expected depth and alpha on all cores. Its kernels are in `cpu_kernels`."""
+
+import os
+import sys
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from queue import SimpleQueue
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flymirage_core.rendering import cpu_kernels as kernels
+from flymirage_core.rendering.camera import Camera
+from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rendering
+from flymirage_core.splats.cloud import GaussianCloud
+
+Float32 = NDArray[np.float32]
+
+LOOK_AHEAD = 2
+"""Finished frames that may wait for their reader, beyond one for each thread."""
+MAX_COORDINATE = 1e5
+"""Metres. Gaussians farther from the world's origin are left out."""
+MAX_SCALE = 1e3
+"""Metres. Gaussians with a larger standard deviation are left out: their squares would overflow float32."""
+
+
+class CpuRasterizer:
+    """Renders whole frames side by side, one on each of ``threads`` threads (0 = all cores this process may use).
+
+    The same cloud and camera give the same bytes whatever the number of threads. Gaussians that cannot be drawn (not
+    finite, a zero quaternion, an opacity below 1/255, absurdly far or large) are left out.
+    """
+
+    name = "cpu"
+
+    def __init__(self, threads: int = 0) -> None:
+        self.threads = threads or usable_cores()
+        self._prepared: tuple[GaussianCloud, SplatTable] | None = None
+
+    def render(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator[Rendering]:
+        """Pictures in the cameras' order. At most ``threads + LOOK_AHEAD`` frames are held or in the making."""
+        for picture in self.render_float(cloud, cameras):
+            yield picture.quantised()
+
+    def render_float(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator["FloatPicture"]:
+        """As `render`, before rounding to 8 bits and before depth is struck out where alpha is small."""
+        table = self._table(cloud)
+        scratch: SimpleQueue[Scratch] = SimpleQueue()
+        for _ in range(self.threads):
+            scratch.put(Scratch.for_table(table))
+
+        def frame(camera: Camera) -> FloatPicture:
+            mine = scratch.get()
+            try:
+                return rasterize(table, camera, mine)
+            finally:
+                scratch.put(mine)
+
+        pool = ThreadPoolExecutor(self.threads, "rasterizer")
+        pending: deque[Future[FloatPicture]] = deque()
+        try:
+            for camera in cameras:
+                pending.append(pool.submit(frame, camera))
+                if len(pending) >= self.threads + LOOK_AHEAD:
+                    yield pending.popleft().result()
+            while pending:
+                yield pending.popleft().result()
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+    def _table(self, cloud: GaussianCloud) -> "SplatTable":
+        prepared = self._prepared
+        if prepared is None or prepared[0] is not cloud:
+            self._prepared = prepared = (cloud, SplatTable.of(cloud))
+        return prepared[1]
+
+
+def usable_cores() -> int:
+    """How many cores this process may use."""
+    if sys.platform == "linux":
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@dataclass(frozen=True, eq=False)
+class FloatPicture:
+    """What the kernels make: linear in the Gaussians' colours, on black, not clipped above."""
+
+    rgb: Float32  # (H, W, 3), 1 = full
+    depth: Float32  # (H, W) metres, expected z-depth, also where hardly anything is
+    alpha: Float32  # (H, W) in [0, 1]
+
+    def quantised(self) -> Rendering:
+        """Rounded and clipped to 8 bits; depth is 0 where alpha is below `MIN_ALPHA_FOR_DEPTH`."""
+        rgb = np.rint(np.clip(self.rgb, 0, 1) * np.float32(255)).astype(np.uint8)
+        depth = np.where(self.alpha >= MIN_ALPHA_FOR_DEPTH, self.depth, np.float32(0))
+        return Rendering(rgb, depth, self.alpha)
+
+
+@dataclass(frozen=True, eq=False)
+class SplatTable:
+    """A cloud made ready for the kernels: a structure of arrays in Morton order, culled in blocks of 256."""
+
+    means: Float32  # (3, N) metres
+    axes: Float32  # (9, N) the ellipsoid's three half axes (R S, column by column), metres
+    log2_opacities: Float32  # (N,)
+    file_indices: NDArray[np.uint32]  # (N,) place in the cloud, which breaks ties in depth
+    blocks: Float32  # (N / 256, 4) centre and radius of a ball round the block's ellipsoids
+    sh: Float32  # (N, 3 K)
+
+    @staticmethod
+    def of(cloud: GaussianCloud) -> "SplatTable":
+        """Sort a cloud's drawable Gaussians along a Morton curve. Takes about half a second for a million."""
+        kept = np.flatnonzero(drawable(cloud))
+        kept = kept[np.argsort(morton_codes(cloud.means[kept]), kind="stable")]
+        means, scales = cloud.means[kept], np.abs(cloud.scales[kept])
+        return SplatTable(
+            np.ascontiguousarray(means.T),
+            scaled_axes(cloud.quaternions[kept], scales),
+            np.log2(np.minimum(cloud.opacities[kept], 1)),
+            kept.astype(np.uint32),
+            bounding_balls(means, np.float32(kernels.EXTENT) * scales.max(axis=1, initial=0)),
+            np.ascontiguousarray(cloud.sh[kept].reshape(len(kept), -1)),
+        )
+
+    def arrays(self) -> kernels.Splats:
+        return self.means, self.axes, self.log2_opacities, self.file_indices, self.blocks, self.sh
+
+
+@dataclass(frozen=True, eq=False)
+class Scratch:
+    """Where a frame's visible Gaussians are written; one for each thread. Only touched pages cost memory."""
+
+    records: Float32  # (N, 16)
+    ids: NDArray[np.uint32]  # (N,)
+
+    @staticmethod
+    def for_table(table: SplatTable) -> "Scratch":
+        n = len(table.file_indices)
+        return Scratch(np.empty((n, kernels.RECORD), np.float32), np.empty(n, np.uint32))
+
+
+def rasterize(table: SplatTable, camera: Camera, scratch: Scratch) -> FloatPicture:
+    """One frame on the calling thread."""
+    k = camera.intrinsics
+    shape = (k.height, k.width)
+    picture = FloatPicture(np.empty((*shape, 3), np.float32), np.empty(shape, np.float32), np.empty(shape, np.float32))
+    rotation = camera.T_camera_world[:3, :3].ravel()
+    packed = np.concatenate([rotation, camera.position, [k.fx, k.fy, k.cx, k.cy]]).astype(np.float64)  # (16,)
+    kernels.render_frame(
+        table.arrays(), packed, scratch.records, scratch.ids, picture.rgb, picture.depth, picture.alpha
+    )
+    return picture
+
+
+def drawable(cloud: GaussianCloud) -> NDArray[np.bool_]:
+    """Which Gaussians (N,) can be drawn at all; the kernels assume finite numbers."""
+    with np.errstate(invalid="ignore"):
+        usable: NDArray[np.bool_] = (
+            (np.abs(cloud.means) <= MAX_COORDINATE).all(axis=1)
+            & (np.abs(cloud.scales) <= MAX_SCALE).all(axis=1)
+            & np.isfinite(cloud.quaternions).all(axis=1)
+            & (np.abs(cloud.quaternions).max(axis=1, initial=0) > 1e-12)
+            & (cloud.opacities >= kernels.MIN_ALPHA)
+            & np.isfinite(cloud.opacities)
+            & np.isfinite(cloud.sh).all(axis=(1, 2))
+        )
+    return usable
+
+
+def morton_codes(points: Float32) -> NDArray[np.uint32]:
+    """Place (N,) of ``points`` (N, 3) on a Morton curve with 1024 steps an axis over the middle 99 % of the points."""
+    if len(points) == 0:
+        return np.empty(0, np.uint32)
+    low, high = np.quantile(points, [0.005, 0.995], axis=0).astype(np.float32)
+    step = max(float((high - low).max()), 1e-6) / 1023
+    cells = np.clip((points - low) / step, 0, 1023).astype(np.uint32)
+    for shift, mask in ((16, 0x030000FF), (8, 0x0300F00F), (4, 0x030C30C3), (2, 0x09249249)):
+        cells = (cells | cells << np.uint32(shift)) & np.uint32(mask)
+    codes: NDArray[np.uint32] = cells[:, 0] | cells[:, 1] << np.uint32(1) | cells[:, 2] << np.uint32(2)
+    return codes
+
+
+def scaled_axes(quaternions: Float32, scales: Float32) -> Float32:
+    """The columns of R S (9, N), for quaternions (N, 4) xyzw of any length and scales (N, 3)."""
+    q = quaternions.astype(np.float64)
+    x, y, z, w = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
+    columns = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+        (2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+        (2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
+    )
+    axes = np.empty((9, len(q)), np.float32)
+    for k, column in enumerate(columns):
+        for i, component in enumerate(column):
+            axes[3 * k + i] = component * scales[:, k]
+    return axes
+
+
+def bounding_balls(means: Float32, radii: Float32) -> Float32:
+    """Centre and radius (N / 256, 4) of a ball round the balls (means, radii) of each block of 256."""
+    starts = np.arange(0, len(means), kernels.BLOCK)
+    if len(starts) == 0:
+        return np.empty((0, 4), np.float32)
+    low, high = np.minimum.reduceat(means, starts), np.maximum.reduceat(means, starts)
+    centres = (low + high) / 2  # (B, 3)
+    distances = np.linalg.norm(means - np.repeat(centres, kernels.BLOCK, axis=0)[: len(means)], axis=1)
+    slack = np.float32(1.0001)  # for rounding
+    return np.column_stack([centres, np.maximum.reduceat(distances + radii, starts) * slack]).astype(np.float32)
