@@ -1,7 +1,7 @@
 """`Frames`, the product of the `frames` asset: for each flight an RGB video, a depth video and a pose a frame.
 
 Layout: ``<flight_id:04d>/rgb.mp4`` (H.264), ``<flight_id:04d>/depth.mkv`` (FFV1, 16-bit millimetres, 0 = no return),
-``frames.parquet`` (one row a frame: flight_id, frame_index, time, position, quaternion xyzw of the camera's optical
+``frames.parquet`` (flight_id, frame_index, time, position, quaternion xyzw of the camera's optical
 frame, alpha_coverage, mean_depth), ``camera.json`` (intrinsics, T_body_camera, frame rate). Nothing is decoded before it is
 asked for.
 """
