@@ -142,8 +142,9 @@ def _read_compressed_ply(path: Path) -> _RawGaussians:
 
 
 def _from_gsply(data: Any) -> _RawGaussians:
-    rest = data.shN if data.shN is not None else np.zeros((len(data.means), 0, 3), np.float32)
-    sh = np.concatenate([data.sh0[:, None], rest.reshape(len(data.means), -1, 3)], axis=1)
+    sh = data.sh0[:, None]  # (N, 1, 3)
+    if data.shN is not None and data.shN.size > 0:
+        sh = np.concatenate([sh, data.shN.reshape(len(sh), -1, 3)], axis=1)
     return _RawGaussians(data.means, data.scales, data.quats, data.opacities, sh)
 
 

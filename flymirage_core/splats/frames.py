@@ -159,13 +159,10 @@ def estimate_floor(cloud: GaussianCloud, centre_z: float) -> tuple[float, str]:
     """
     heights, areas = _levels(cloud, 2)
     below = heights < centre_z - FLOOR_DEPTH
-    heights, areas = heights[below], areas[below]
-    if areas.max(initial=0) <= 0:
+    floor = _first_level(heights[below], areas[below])
+    if floor is None:
         return _quantile(cloud.means[:, 2], _area(cloud), 0.01), "lowest matter"
-    n = int(np.argmax(areas >= FLOOR_SHARE * areas.max()))
-    while n + 1 < len(areas) and areas[n + 1] > areas[n]:
-        n += 1
-    return float(heights[n]), "estimated"
+    return floor, "estimated"
 
 
 def _matter(cloud: GaussianCloud) -> GaussianCloud:
@@ -179,10 +176,23 @@ def _ceiling(cloud: GaussianCloud, centre_z: float) -> float | None:
     """Height of the highest large level surface above c, by the floor's rule; None if there is none."""
     heights, areas = _levels(cloud, 2)
     above = heights > centre_z + FLOOR_DEPTH
-    heights, areas = heights[above][::-1], areas[above][::-1]
+    return _first_level(heights[above][::-1], areas[above][::-1])
+
+
+def _first_level(heights: Float64, areas: Float64) -> float | None:
+    """The first height at which a level surface is large, taken at the middle of that surface's thickness."""
     if areas.max(initial=0) <= 0:
         return None
-    return float(heights[int(np.argmax(areas >= FLOOR_SHARE * areas.max()))])
+    first = int(np.argmax(areas >= FLOOR_SHARE * areas.max()))
+    peak = first
+    while peak + 1 < len(areas) and areas[peak + 1] > areas[peak]:
+        peak += 1
+    last = peak
+    while last + 1 < len(areas) and areas[last + 1] >= FLOOR_SHARE * areas[peak]:
+        last += 1
+    while areas[first] < FLOOR_SHARE * areas[peak]:
+        first += 1
+    return float(np.average(heights[first : last + 1], weights=areas[first : last + 1]))
 
 
 def _centre(cloud: GaussianCloud) -> tuple[Float64, str]:
