@@ -9,9 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from flymirage_core.dataset.episodes import SceneProducts
 from flymirage_core.dataset.flight_columns import poses_from_actions, wrapped
+from flymirage_core.dataset.lerobot_schema import RGB_KEY
 from flymirage_core.dataset.reader import EpisodeRecord, LeRobotFolder
 from flymirage_core.errors import ProductError
 from flymirage_core.rendering.camera import Camera, Intrinsics
+from flymirage_core.rendering.frames import FlightFrames
 
 PIXEL_TOLERANCE = 1.0
 """Pixels between the target's centre seen by the exported pose and by the camera that took the picture."""
@@ -23,7 +25,7 @@ def check_export(folder: Path, scenes: Iterable[SceneProducts]) -> int:
     """Check every episode; returns in how many of them the target's centre lies in the last picture.
 
     Raises `ProductError` if a pose rebuilt from the actions, or the target re-projected into the last frame, is not
-    where it was in the products.
+    where it was in the products, or if an episode's first picture is another's.
     """
     export = LeRobotFolder(folder)
     products = {p.scene: p for p in scenes}
@@ -34,8 +36,9 @@ def _check_episode(export: LeRobotFolder, episode: EpisodeRecord, products: Scen
     columns = export.columns(episode.index, ("observation.state", "action", "sim.yaw", "timestamp"))
     state, action, yaw = (columns[k].astype(np.float64) for k in ("observation.state", "action", "sim.yaw"))
     _check_actions(episode, state, action, yaw)
-    source = products.frames.flight(episode.flight_id).cameras()[-1]
-    return _check_last_view(episode, _camera_of(state[-1], export.camera(episode.scene)), source)
+    frames = products.frames.flight(episode.flight_id)
+    _check_first_picture(export, episode, frames)
+    return _check_last_view(episode, _camera_of(state[-1], export.camera(episode.scene)), frames.cameras()[-1])
 
 
 def _check_actions(episode: EpisodeRecord, state: Any, action: Any, yaw: Any) -> None:
@@ -46,6 +49,16 @@ def _check_actions(episode: EpisodeRecord, state: Any, action: Any, yaw: Any) ->
         raise ProductError(
             f"export self-test: episode {episode.index} ({_name(episode)}) drifts {drift:.4f} m and "
             f"{turn:.4f} rad when its poses are rebuilt from its actions, at most {POSE_TOLERANCE} is allowed"
+        )
+
+
+def _check_first_picture(export: LeRobotFolder, episode: EpisodeRecord, frames: FlightFrames) -> None:
+    """The joined video, asked for the episode's first time stamp, must give the flight's first frame to the bit."""
+    found, expected = next(export.rgb(episode.index), None), next(frames.rgb())
+    if found is None or not np.array_equal(found, expected):
+        raise ProductError(
+            f"export self-test: the joined video does not show the first frame of episode {episode.index} "
+            f"({_name(episode)}) at {episode.row['videos/' + RGB_KEY + '/from_timestamp']:.3f} s"
         )
 
 

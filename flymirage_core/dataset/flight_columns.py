@@ -89,12 +89,13 @@ def _frame_times(flight: Flight, frames: FlightFrames) -> Float64:
             f"{frames.rig.frame_rate:g} Hz that end at {even[-1]:.3f} s, within the flight's {flight.times[-1]:.3f} s; "
             "materialise `frames` again"
         )
-    return np.minimum(even, flight.times[-1])
+    within: Float64 = np.minimum(even, flight.times[-1])
+    return within
 
 
 def _states(flight: Flight, times: Float64) -> Float64:
     """Position, quaternion xyzw, velocity, body rates at ``times``: (F, 13)."""
-    turns = Slerp(flight.times, Rotation.from_quat(flight.quaternions))(times).as_quat()
+    turns: Float64 = Slerp(flight.times, Rotation.from_quat(flight.quaternions))(times).as_quat()
     turns *= np.where(turns[:, 3:] < 0, -1.0, 1.0)  # q and -q are one rotation: w >= 0 is written
     return np.column_stack(
         [

@@ -196,8 +196,6 @@ def _arrow(values: NDArray[Any]) -> pa.Array:
 
 def _counted_rgb(frames: FlightFrames) -> PictureCounts:
     counted = [PictureCounts.of_rgb(rgb) for i, rgb in enumerate(frames.rgb()) if i % STATS_EVERY == 0]
-    if not counted:
-        raise ProductError(f"{frames.folder / 'rgb.mp4'} holds no picture; materialise `frames` again")
     return sum(counted[1:], counted[0])
 
 
@@ -212,9 +210,4 @@ def _encoded_depth(frames: FlightFrames) -> tuple[list[bytes], PictureCounts]:
         pngs.append(png.tobytes())
         if i % STATS_EVERY == 0:
             counted.append(PictureCounts.of_depth(depth))
-    if len(pngs) != len(frames):
-        raise ProductError(
-            f"{frames.folder}: {len(pngs)} depth frames could be decoded, frames.parquet lists {len(frames)}; "
-            "materialise `frames` again"
-        )
     return pngs, sum(counted[1:], counted[0])

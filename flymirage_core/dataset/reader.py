@@ -1,4 +1,4 @@
-"""`LeRobotFolder`: our own small reader of the export. It needs nothing of LeRobot, and decodes what it is asked for."""
+"""`LeRobotFolder`: our own small reader of the export; it needs nothing of LeRobot and decodes what is asked for."""
 
 import json
 from collections.abc import Iterator
@@ -102,14 +102,14 @@ class LeRobotFolder:
         rate = self.info["fps"]
         with av.open(str(path)) as container:
             stream = container.streams.video[0]
-            assert stream.time_base is not None
-            container.seek(round(first / rate / stream.time_base), stream=stream)
+            tick = float(stream.time_base or 1)  # seconds
+            container.seek(round(first / rate / tick), stream=stream)
             for frame in container.decode(stream):
-                number = round(float(frame.pts * stream.time_base) * rate)
+                number = round((frame.pts or 0) * tick * rate)
                 if number >= first + record.length:
                     return
                 if number >= first:
-                    yield frame.to_ndarray(format="rgb24")
+                    yield frame.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
 
     def depth(self, episode: int) -> Iterator[NDArray[np.uint16]]:
         """Depth (H, W) in millimetres, in order; nothing if the export holds none."""

@@ -47,8 +47,14 @@ class VideoJoiner:
     def append(self, video: Path, frame_count: int) -> VideoSpan:
         """Copy a whole video behind the last; its first frame must be a key frame, as in every file of its own.
 
-        Raises `ProductError` if it is no H.264, or has not ``frame_count`` frames evenly spaced at the frame rate.
+        Raises `ProductError` if it is torn, no H.264, or has not ``frame_count`` frames evenly spaced at the frame rate.
         """
+        try:
+            return self._append(video, frame_count)
+        except av.FFmpegError as error:
+            raise ProductError(f"{video} is missing or torn ({error}); materialise `frames` again") from error
+
+    def _append(self, video: Path, frame_count: int) -> VideoSpan:
         with av.open(str(video)) as source:
             stream = source.streams.video[0]
             if stream.codec_context.name != "h264":
@@ -58,7 +64,7 @@ class VideoJoiner:
             self._make_room(stream)
             for packet, shown, decoded in zip(packets, pts, dts, strict=True):
                 packet.stream = self._stream
-                packet.time_base = self._stream.time_base
+                packet.time_base = Fraction(1, self._rate)
                 packet.pts, packet.dts, packet.duration = self._frames + shown, self._frames + decoded, 1
                 self._bytes += packet.size
                 self._output.mux(packet)
@@ -90,7 +96,7 @@ class VideoJoiner:
             chunk, file = divmod(self._number, CHUNK_SIZE)
             path = self._folder / f"chunk-{chunk:03d}" / f"file-{file:03d}.mp4"
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._output = av.open(str(path), "w", options={"movflags": "faststart"})
+            self._output = av.open(str(path), "w", options={"movflags": "faststart", "fflags": "+bitexact"})
             self._stream = self._output.add_stream_from_template(stream)
             self._stream.time_base = Fraction(1, self._rate)
             self._frames = self._bytes = 0

@@ -4,8 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Protocol
 
-import numpy as np
-
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.errors import ProductError
 from flymirage_core.language import gates
@@ -85,17 +83,11 @@ def sampled_indices(frame_count: int, frame_rate: float, frame_step: int) -> lis
 
 
 def sample(frames: FlightFrames, frame_step: int) -> Iterator[Sighting]:
-    """The sampled frames of a flight; both videos are decoded once. Raises `ProductError` if they are short."""
+    """The sampled frames of a flight; both videos are decoded once. Raises `ProductError` if one is torn."""
     if len(frames) == 0:
         raise ProductError(f"{frames.folder}: no frames for flight {frames.flight_id}; materialise `frames` again")
     wanted = set(sampled_indices(len(frames), frames.rig.frame_rate, frame_step))
     cameras = frames.cameras()
-    index = -1
-    for index, (rgb, depth) in enumerate(zip(frames.rgb(), frames.depth(), strict=False)):
+    for index, (rgb, depth) in enumerate(zip(frames.rgb(), frames.depth(), strict=True)):
         if index in wanted:
-            yield Sighting(index, cameras[index], np.asarray(rgb), np.asarray(depth))
-    if index + 1 != len(frames):
-        raise ProductError(
-            f"{frames.folder}: {index + 1} frames could be decoded, frames.parquet lists {len(frames)}; "
-            "materialise `frames` again"
-        )
+            yield Sighting(index, cameras[index], rgb, depth)
