@@ -16,6 +16,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from flymirage_core.errors import FlyMirageError, InputError
 from flymirage_core.progress import listening
 from flymirage_core.settings import Settings
+from flymirage_core.splats.frames import Up
 
 if TYPE_CHECKING:
     from resources.store import Store
@@ -68,7 +69,7 @@ def grow(scenes: Annotated[int, typer.Option(min=1, help="how many new scenes")]
 def import_(
     world: Annotated[Path, typer.Argument(help="a Gaussian-splat world: .spz or .ply")],
     scene: Annotated[str, typer.Option(help="the scene's key: lower-case letters, digits, '-' and '_'")],
-    up: Annotated[str, typer.Option(help="the file's up axis: auto, y, z or -y")] = "auto",
+    up: Annotated[Up, typer.Option(help="the file's up axis: auto, y, z or -y")] = "auto",
     scale: Annotated[float | None, typer.Option(help="metres per file unit; estimated if not given")] = None,
     title: Annotated[str, typer.Option(help="what people call the place")] = "",
     register_only: Annotated[bool, typer.Option("--register-only", help="do not make its products now")] = False,
@@ -152,7 +153,7 @@ def lerobot(
 @app.command()
 def doctor(
     world: Annotated[Path, typer.Argument(help="a Gaussian-splat world: .spz or .ply")],
-    up: Annotated[str, typer.Option(help="the file's up axis: auto, y, z or -y")] = "auto",
+    up: Annotated[Up, typer.Option(help="the file's up axis: auto, y, z or -y")] = "auto",
     scale: Annotated[float | None, typer.Option(help="metres per file unit; estimated if not given")] = None,
 ) -> None:
     """Say whether a world can be flown in, what is wrong with it, and what to do."""

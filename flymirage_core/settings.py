@@ -194,6 +194,14 @@ class Settings(BaseSettings):
     frames: FrameSettings = FrameSettings()
     verdict: VerdictSettings = VerdictSettings()
 
+    @model_validator(mode="after")
+    def _frames_are_states(self) -> "Settings":
+        if (self.planner.state_rate / self.frames.rate) % 1 > 1e-9:
+            raise ValueError(
+                f"frames.rate ({self.frames.rate:g} Hz) must divide planner.state_rate ({self.planner.state_rate:g} Hz)"
+            )
+        return self
+
     @classmethod
     def settings_customise_sources(
         cls,

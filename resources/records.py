@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_valida
 
 from flymirage_core.errors import ProductError
 from flymirage_core.scene.keys import check_scene_key
+from flymirage_core.splats.frames import Up
 
 SCHEMA_VERSION = 1
 """Of both documents; raised when a reader of the old ones would misread the new ones."""
@@ -26,7 +27,7 @@ class SceneOrigin(Document):
     subcategory: str = ""
     file_name: str = ""  # imported
     file_sha256: str = ""
-    up: str = "auto"
+    up: Up = "auto"
     scale: float | None = None  # metres per file unit; None = estimate
 
     @field_validator("scene")

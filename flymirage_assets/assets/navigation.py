@@ -1,7 +1,8 @@
 """Navigation & Collection (paper, section III-C): task sets, feasible flights, frames, verdicts, prompts."""
 
 import dagster as dg
-from flymirage_core.navigation.fly import camera_paths, fly_task_sets
+from flymirage_core.navigation.camera_paths import camera_paths
+from flymirage_core.navigation.fly import fly_task_sets
 
 from flymirage_assets import previews
 from flymirage_assets.stage import Stage, product_asset

@@ -4,7 +4,7 @@ import math
 
 import dagster as dg
 from flymirage_core.annotation.exploration import explore
-from flymirage_core.rendering.placements import orbit, view_intrinsics
+from flymirage_core.rendering.placements import orbit
 
 from flymirage_assets import previews
 from flymirage_assets.stage import Stage, product_asset

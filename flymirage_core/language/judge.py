@@ -20,7 +20,8 @@ PAPER_FRAME_RATE = 30.0
 class FrameJudge(Protocol):
     """Looks at each flight's frames and says keep or drop, with reasons (section III-C, visual quality assessment)."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     def judge(self, frames: Frames, flights: Trajectories, boxes: BoxMap) -> QualityVerdicts: ...
 

@@ -45,7 +45,8 @@ VARIETY = 3
 class Prompter(Protocol):
     """Writes up to three instructions for each kept flight (section III-C); all are read back before they count."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     def write(self, scene: str, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts) -> Prompts: ...
 
