@@ -1,0 +1,141 @@
+"""Videos on disk: RGB as H.264 in mp4, depth without loss as FFV1 in Matroska. Frames go in and come out one by one.
+
+The same frames give the same bytes whatever else the machine does: one encoder thread, no random identifiers, no dates.
+"""
+
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import av
+import cv2
+import numpy as np
+from av.video.reformatter import ColorRange, Colorspace
+from numpy.typing import NDArray
+
+from flymirage_core.errors import InputError, ProductError
+
+GROUP_OF_PICTURES = 2
+"""Frames from one key frame to the next; small, so that a trainer can jump to any frame (LeRobot's choice)."""
+H264_OPTIONS = {"crf": "18", "preset": "veryfast", "tune": "fastdecode"}
+"""Measured on a captured room at 480 x 360: 43 dB, 13 kB and 3 ms of CPU a frame."""
+FFV1_OPTIONS = {"level": "3", "coder": "1", "context": "0", "slices": "4", "slicecrc": "1"}
+"""A checksum in every slice. 56 kB and 3 ms of CPU a frame on the same room."""
+BT601 = Colorspace.ITU601
+
+
+class VideoWriter:
+    """Encodes frame after frame into one file; the file is whole when the ``with`` block has ended.
+
+    Make one with `rgb_writer` or `depth_writer`.
+    """
+
+    def __init__(self, path: Path, codec: str, formats: tuple[str, str], rate: float, options: dict[str, str]) -> None:
+        self.path = path
+        self.count = 0
+        self._codec, self._rate, self._options = codec, Fraction(rate).limit_denominator(1001), options
+        self._given, self._stored = formats
+        self._container: Any = None
+        self._stream: Any = None
+
+    def __enter__(self) -> "VideoWriter":
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._container = av.open(str(self.path), "w", options={"fflags": "+bitexact"})
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if kind is None and self._stream is not None:
+                self._container.mux(self._stream.encode(None))
+        finally:
+            self._container.close()
+        if kind is None and self.count == 0:
+            raise InputError(f"{self.path.name}: no frame was given; a video needs at least one")
+
+    def append(self, frame: NDArray[np.generic]) -> None:
+        """Encode one more frame; its shape must be the first one's."""
+        height, width = frame.shape[:2]
+        if self._stream is None:
+            self._open_stream(width, height)
+        stream = self._stream
+        if (width, height) != (stream.width, stream.height):
+            raise InputError(
+                f"{self.path.name}: frame {self.count} is {width} x {height} pixels, the first was "
+                f"{stream.width} x {stream.height}; all frames of a video must have one size"
+            )
+        picture = av.VideoFrame.from_ndarray(np.ascontiguousarray(frame), format=self._given)
+        picture.pts, picture.time_base = self.count, 1 / self._rate
+        self._container.mux(stream.encode(picture.reformat(format=self._stored, dst_colorspace=BT601)))
+        self.count += 1
+
+    def _open_stream(self, width: int, height: int) -> None:
+        if self._stored == "yuv420p" and (width % 2 or height % 2):
+            raise InputError(
+                f"{self.path.name}: {width} x {height} pixels; H.264 video needs an even width and an even height"
+            )
+        stream = self._stream = self._container.add_stream(self._codec, rate=self._rate, options=self._options)
+        stream.width, stream.height, stream.pix_fmt = width, height, self._stored
+        context = stream.codec_context
+        context.gop_size, context.max_b_frames, context.thread_count = GROUP_OF_PICTURES, 0, 1
+        context.flags |= av.codec.context.Flags.bitexact
+        context.time_base = 1 / self._rate
+        if self._stored == "yuv420p":
+            context.colorspace, context.color_range = BT601, ColorRange.MPEG
+
+
+def rgb_writer(path: Path, rate: float) -> VideoWriter:
+    """H.264 yuv420p for frames uint8 (H, W, 3), H and W even, at ``rate`` Hz. Raises `InputError` on odd sizes."""
+    return VideoWriter(path, "libx264", ("rgb24", "yuv420p"), rate, H264_OPTIONS)
+
+
+def depth_writer(path: Path, rate: float) -> VideoWriter:
+    """FFV1 gray16le for frames uint16 (H, W) in millimetres, 0 = no return, at ``rate`` Hz. Lossless."""
+    return VideoWriter(path, "ffv1", ("gray16le", "gray16le"), rate, FFV1_OPTIONS)
+
+
+def write_rgb(path: Path, frames: Iterable[NDArray[np.uint8]], rate: float) -> int:
+    """Write RGB ``frames`` (H, W, 3) as they come; return how many there were."""
+    with rgb_writer(path, rate) as writer:
+        for frame in frames:
+            writer.append(frame)
+    return writer.count
+
+
+def write_depth(path: Path, frames: Iterable[NDArray[np.uint16]], rate: float) -> int:
+    """Write depth ``frames`` (H, W) in millimetres as they come; return how many there were."""
+    with depth_writer(path, rate) as writer:
+        for frame in frames:
+            writer.append(frame)
+    return writer.count
+
+
+def read_rgb(path: Path, count: int) -> Iterator[NDArray[np.uint8]]:
+    """The ``count`` RGB frames (H, W, 3) of a video, one by one; raises `ProductError` if they are not all there."""
+    for planes in _decoded(path, "yuv420p", count):
+        # by OpenCV, because libswscale's default conversion comes out one grey level darker
+        yield np.asarray(cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8)
+
+
+def read_depth(path: Path, count: int) -> Iterator[NDArray[np.uint16]]:
+    """The ``count`` depth frames (H, W) in millimetres, one by one; raises `ProductError` as `read_rgb` does."""
+    yield from _decoded(path, "gray16le", count)
+
+
+def _decoded(path: Path, pixel_format: str, count: int) -> Iterator[NDArray[Any]]:
+    done = 0
+    try:
+        with av.open(str(path)) as container:
+            for frame in container.decode(video=0):
+                if frame.is_corrupt:
+                    raise ProductError(f"{path}: frame {done} is damaged; materialise `frames` again")
+                done += 1
+                if done <= count:
+                    yield frame.to_ndarray(format=pixel_format)
+    except (av.FFmpegError, IndexError) as error:
+        raise ProductError(f"{path} is missing or torn ({error}); materialise `frames` again") from error
+    if done != count:
+        raise ProductError(f"{path} holds {done} frames, {count} were expected; materialise `frames` again")
