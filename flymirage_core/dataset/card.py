@@ -41,7 +41,8 @@ def dataset_card(statistics: DatasetStatistics, scenes: tuple[SceneCounts, ...],
             "# An aerial vision-language-navigation data set, made by FlyMirage",
             "",
             f"{s.episodes} flights with {s.prompts} instructions in {s.scenes} Gaussian-splat "
-            f"{'scene' if s.scenes == 1 else 'scenes'}; {s.frames} frames of RGB, metric depth and 6-DoF pose ({s.hours:.2f} h of flight).",
+            f"{'scene' if s.scenes == 1 else 'scenes'}; {s.frames} frames of RGB, metric depth "
+            f"and 6-DoF pose ({s.hours:.2f} h of flight).",
             "",
             "## Figures",
             _table(

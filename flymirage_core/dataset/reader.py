@@ -109,7 +109,10 @@ class LeRobotFolder:
                 if number >= first + record.length:
                     return
                 if number >= first:
-                    yield frame.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
+                    planes = frame.to_ndarray(format="yuv420p")  # to RGB as `rendering.video` does it
+                    yield np.asarray(
+                        cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8
+                    )  # as `rendering.video` does
 
     def depth(self, episode: int) -> Iterator[NDArray[np.uint16]]:
         """Depth (H, W) in millimetres, in order; nothing if the export holds none."""

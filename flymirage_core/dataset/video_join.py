@@ -47,7 +47,7 @@ class VideoJoiner:
     def append(self, video: Path, frame_count: int) -> VideoSpan:
         """Copy a whole video behind the last; its first frame must be a key frame, as in every file of its own.
 
-        Raises `ProductError` if it is torn, no H.264, or has not ``frame_count`` frames evenly spaced at the frame rate.
+        Raises `ProductError` if it is torn, no H.264, or has not ``frame_count`` frames evenly spaced at its rate.
         """
         try:
             return self._append(video, frame_count)

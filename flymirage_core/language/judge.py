@@ -85,8 +85,6 @@ def sampled_indices(frame_count: int, frame_rate: float, frame_step: int) -> lis
 
 def sample(frames: FlightFrames, frame_step: int) -> Iterator[Sighting]:
     """The sampled frames of a flight; both videos are decoded once. Raises `ProductError` if one is torn."""
-    if len(frames) == 0:
-        raise ProductError(f"{frames.folder}: no frames for flight {frames.flight_id}; materialise `frames` again")
     wanted = set(sampled_indices(len(frames), frames.rig.frame_rate, frame_step))
     cameras = frames.cameras()
     for index, (rgb, depth) in enumerate(zip(frames.rgb(), frames.depth(), strict=True)):

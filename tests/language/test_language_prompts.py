@@ -1,0 +1,230 @@
+"""Prompts: what is said of a target, and what is refused because it could mean something else."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from filmed_room import box, flight_to, furnished_room
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from flymirage_core.annotation.boxes import BoxMap, ObjectBox
+from flymirage_core.language.prompter import OfflinePrompter, expressions
+from flymirage_core.language.prompts import Prompt
+from flymirage_core.language.referring import (
+    Between,
+    Colour,
+    Located,
+    Meaning,
+    Most,
+    Noun,
+    Related,
+    Superlative,
+    coloured,
+    named,
+    picks,
+    resolve,
+)
+from flymirage_core.language.scene_relations import Relation, Side, StartPose, Truth, next_to, on, under
+from flymirage_core.language.verdicts import QualityVerdicts, Verdict
+from flymirage_core.language.wording import Landmarks, definite, indefinite
+from flymirage_core.navigation.trajectories import Trajectories
+
+EAST = StartPose((0.0, 0.0, 1.2), 0.0)  # looks along +x, so +y is on the left
+
+
+def chair(object_id: int, x: float, y: float, colour: str = "red") -> ObjectBox:
+    return box(object_id, "chair", (x, y, 0.45), colour=colour)
+
+
+def kinds(*boxes: ObjectBox, target: int = 0, start: StartPose = EAST) -> dict[str, Meaning]:
+    return dict(expressions(BoxMap(boxes), target, start, np.random.default_rng(0)))
+
+
+def written(boxes: BoxMap, target: int, keep: bool = True) -> list[Prompt]:
+    flight = flight_to(boxes.by_id(target), 0)
+    verdicts = QualityVerdicts((Verdict(0, keep, (), "test"),))
+    return list(OfflinePrompter().write("cafe", boxes, Trajectories((flight,)), verdicts))
+
+
+class TestReadingBack:
+    def test_a_bare_noun_means_every_thing_of_that_name(self) -> None:
+        boxes = (chair(0, 2, 0), chair(1, 3, 2), box(2, "table", (1, 1, 0.4)))
+        assert resolve(Meaning((Noun("chair"),)), boxes, EAST) == {0, 1}
+
+    def test_chair_may_mean_an_office_chair_and_an_armchair(self) -> None:
+        boxes = (chair(0, 2, 0), box(1, "office chair", (3, 0, 0.5)), box(2, "armchair", (4, 0, 0.5)))
+        assert resolve(Meaning((Noun("chair"),)), boxes, EAST) == {0, 1, 2}
+        assert named("couch", "sofa") is Truth.MAYBE
+        assert named("table", "lamp") is Truth.NO
+
+    def test_colours_that_light_confuses_do_not_tell_things_apart(self) -> None:
+        assert coloured("green", "dark green") is Truth.MAYBE
+        assert coloured("light green", "dark green") is Truth.NO
+        assert coloured("white", "beige") is Truth.MAYBE
+        assert coloured("red", "") is Truth.MAYBE, "a colour that was not measured may be any"
+        assert coloured("red", "green") is Truth.NO
+
+    def test_left_and_right_follow_the_drones_heading(self) -> None:
+        left_one, right_one = chair(0, 2, 2), chair(1, 2, -2)
+        on_left = Meaning((Noun("chair"), Located(Side.LEFT)))
+        turned = StartPose((0.0, 0.0, 1.2), np.pi)
+        assert picks(on_left, (left_one, right_one), EAST, 0)
+        assert resolve(on_left, (left_one, right_one), turned) == {1}
+
+    def test_the_lamp_on_the_table_is_not_the_lamp_beside_it(self) -> None:
+        table = box(0, "table", (2, 0, 0.4), (1.4, 0.8, 0.8))
+        on_it, beside = box(1, "lamp", (2, 0, 1.0), (0.3, 0.3, 0.4)), box(2, "lamp", (3.2, 0, 0.75), (0.3, 0.3, 1.5))
+        meaning = Meaning((Noun("lamp"), Related(Relation.ON, Meaning((Noun("table"),)))))
+        assert picks(meaning, (table, on_it, beside), EAST, 1)
+        assert next_to(beside, table) is Truth.YES and next_to(on_it, table) is Truth.NO
+
+    def test_a_box_under_a_desk_is_under_it_although_the_desks_box_reaches_the_floor(self) -> None:
+        desk, crate = box(0, "desk", (0, 0, 0.4), (1.4, 0.8, 0.8)), box(1, "crate", (0.2, 0, 0.2), (0.4, 0.4, 0.4))
+        assert under(crate, desk) is Truth.YES
+        assert under(desk, crate) is Truth.NO
+        assert on(desk, crate) is Truth.NO
+
+    def test_between_needs_the_middle(self) -> None:
+        boxes = (
+            box(0, "plant", (2, 0, 0.5)),
+            box(1, "sofa", (2, 1.5, 0.4)),
+            box(2, "door", (2, -1.5, 1.0)),
+            box(3, "plant", (4, 3, 0.5)),
+        )
+        meaning = Meaning((Noun("plant"), Between(Meaning((Noun("sofa"),)), Meaning((Noun("door"),)))))
+        assert picks(meaning, boxes, EAST, 0)
+
+    def test_the_nearest_must_be_nearer_by_a_margin(self) -> None:
+        nearest = Meaning((Noun("chair"), Most(Superlative.NEAREST)))
+        assert picks(nearest, (chair(0, 2, 0), chair(1, 4, 0)), EAST, 0)
+        assert resolve(nearest, (chair(0, 2, 0), chair(1, 2.3, 0)), EAST) == {0, 1}
+        assert not picks(nearest, (chair(0, 2, 0),), EAST, 0), "a superlative of one thing misleads"
+
+    def test_closest_to_one_of_two_doors_is_in_doubt(self) -> None:
+        closest = Meaning((Noun("chair"), Most(Superlative.CLOSEST_TO, Meaning((Noun("door"),)))))
+        chairs = (chair(0, 2, 0), chair(1, 5, 0))
+        one, other = box(2, "door", (1, 0, 1)), box(3, "door", (6, 0, 1))
+        assert picks(closest, (*chairs, one), EAST, 0)
+        assert not picks(closest, (*chairs, one, other), EAST, 0)
+
+
+class TestRefusal:
+    def test_twins_side_by_side_get_no_prompt_at_all(self) -> None:
+        assert kinds(chair(0, 3.0, 0.1), chair(1, 3.0, -0.1)) == {}
+
+    def test_two_equal_chairs_are_not_told_apart_by_noun_or_colour(self) -> None:
+        found = kinds(chair(0, 3.0, 0.0), chair(1, 3.2, 0.9), box(2, "door", (5.0, -0.4, 1.0), (0.1, 0.9, 2.0)))
+        assert Meaning((Noun("chair"),)) not in found.values()
+        assert all(not any(t == Colour("red") for t in m.terms) or len(m.terms) > 2 for m in found.values())
+
+    def test_a_unique_noun_needs_no_refinement(self) -> None:
+        found = kinds(chair(0, 3, 0), box(1, "table", (1, 3, 0.4)))
+        assert found["object_centred"] == Meaning((Noun("chair"),))
+
+    def test_an_ambiguous_noun_is_refined_by_the_drones_side(self) -> None:
+        found = kinds(chair(0, 2, 2), chair(1, 2, -2))
+        assert found["object_centred"] == Meaning((Noun("chair"), Located(Side.LEFT)))
+
+    def test_a_thing_without_a_name_is_never_called_for_by_name_alone(self) -> None:
+        found = kinds(box(0, "object", (2, 0, 0.4), colour="red"), box(1, "table", (2.9, 0, 0.4), colour="white"))
+        assert "object_centred" not in found
+        assert found["appearance"].terms[0] == Colour("red")
+
+    def test_no_relation_to_an_unnamed_thing_is_told(self) -> None:
+        found = kinds(chair(0, 2, 0), box(1, "object", (2.8, 0, 0.4)))
+        assert "relative" not in found
+
+    def test_a_dropped_flight_gets_no_prompt(self) -> None:
+        assert written(furnished_room(), 4, keep=False) == []
+
+
+places = st.tuples(st.floats(-5, 5), st.floats(-5, 5))
+labels = st.sampled_from(["chair", "office chair", "table", "lamp", "object", "bookshelf"])
+colours = st.sampled_from(["", "red", "dark red", "green", "white", "beige"])
+things = st.lists(st.tuples(labels, places, colours, st.floats(0.2, 2.0)), min_size=1, max_size=12)
+
+
+def room_of(things, turn: float = 0.0) -> BoxMap:
+    """Boxes at the drawn places, the whole room turned about the origin."""
+    c, s = np.cos(turn), np.sin(turn)
+    return BoxMap(
+        tuple(
+            box(i, label, (c * x - s * y, s * x + c * y, h / 2), (0.5, 0.6, h), colour, yaw=0.3 * i + turn)
+            for i, (label, (x, y), colour, h) in enumerate(things)
+        )
+    )
+
+
+def said(boxes: BoxMap, yaw: float) -> list[tuple[str, Meaning]]:
+    return list(expressions(boxes, 0, StartPose((0.0, 0.0, 1.2), yaw), np.random.default_rng(0)))
+
+
+@settings(max_examples=60, deadline=None)
+@given(things, st.floats(-3, 3))
+def test_whatever_the_room_each_prompt_picks_its_target_and_nothing_else(things, yaw) -> None:
+    boxes = room_of(things)
+    for kind, meaning in said(boxes, yaw):
+        assert resolve(meaning, boxes, StartPose((0.0, 0.0, 1.2), yaw)) == {0}, (kind, meaning)
+
+
+@settings(max_examples=60, deadline=None)
+@given(things, st.floats(-3, 3))
+def test_a_twin_in_the_targets_place_silences_everything(things, yaw) -> None:
+    boxes = room_of(things)
+    twin = replace(boxes.by_id(0), object_id=99)
+    assert said(BoxMap((*boxes, twin)), yaw) == []
+
+
+@settings(max_examples=40, deadline=None)
+@given(things, st.floats(-3, 3), st.floats(-3, 3))
+def test_turning_room_and_drone_together_changes_no_word(things, yaw, turn) -> None:
+    rounded = [(label, (round(x, 1), round(y, 1)), colour, round(h, 1)) for label, (x, y), colour, h in things]
+    kinds_said = [kind for kind, _ in said(room_of(rounded), yaw)]
+    assert [kind for kind, _ in said(room_of(rounded, turn), yaw + turn)] == kinds_said
+
+
+class TestWording:
+    def test_a_green_bookshelf_behind_a_chair_gets_its_three_kinds(self) -> None:
+        prompts = written(furnished_room(), 4)
+        assert [p.kind for p in prompts] == ["object_centred", "relative", "appearance"]
+        assert "bookshelf" in prompts[0].text and "green bookshelf" in prompts[2].text
+        assert len({p.text for p in prompts}) == 3
+        assert all(p.text[0].isupper() and p.text.endswith(".") and p.writer == "offline 1" for p in prompts)
+
+    def test_the_same_flight_is_always_told_the_same(self) -> None:
+        assert written(furnished_room(), 4) == written(furnished_room(), 4)
+
+    @pytest.mark.parametrize(
+        ("noun", "phrase"),
+        [
+            ("armchair", "an armchair"),
+            ("tv", "a TV"),
+            ("curtains", "curtains"),
+            ("wine glass", "a wine glass"),
+            ("hourglass", "an hourglass"),
+            ("utensil rack", "a utensil rack"),
+            ("unit", "a unit"),
+        ],
+    )
+    def test_articles_and_plurals(self, noun: str, phrase: str) -> None:
+        assert indefinite(Meaning((Noun(noun),)), Landmarks(frozenset())) == phrase
+
+    def test_a_landmark_that_is_not_the_only_one_takes_the_indefinite_article(self) -> None:
+        sofa = Meaning((Noun("sofa"),))
+        meaning = Meaning((Noun("lamp"), Related(Relation.NEXT_TO, sofa)))
+        assert definite(meaning, Landmarks(frozenset())) == "the lamp next to a sofa"
+        assert definite(meaning, Landmarks(frozenset({sofa}))) == "the lamp next to the sofa"
+
+    def test_adjectives_stand_in_english_order(self) -> None:
+        meaning = Meaning((Noun("cabinet"), Colour("dark green"), Most(Superlative.TALLEST), Located(Side.RIGHT)))
+        assert definite(meaning, Landmarks(frozenset())) == "the tallest dark green cabinet on your right"
+
+    def test_no_sentence_is_worn_out(self) -> None:
+        boxes = furnished_room()
+        flights = tuple(flight_to(boxes.by_id(4), i) for i in range(60))
+        verdicts = QualityVerdicts(tuple(Verdict(i, True, (), "test") for i in range(60)))
+        prompts = OfflinePrompter().write("cafe", boxes, Trajectories(flights), verdicts)
+        plain = [p.text for p in prompts if p.kind == "object_centred"]
+        assert len(plain) == 60
+        assert max(plain.count(text) for text in set(plain)) <= 9
