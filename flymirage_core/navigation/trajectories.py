@@ -133,7 +133,8 @@ class Trajectories:
         ]
         pq.write_table(pa.Table.from_pylist(flights, schema=FLIGHT_SCHEMA), folder / "flights.parquet")
         pq.write_table(
-            pa.Table.from_pylist([asdict(r) for r in self.rejected], schema=REJECTED_SCHEMA), folder / "rejected.parquet"
+            pa.Table.from_pylist([asdict(r) for r in self.rejected], schema=REJECTED_SCHEMA),
+            folder / "rejected.parquet",
         )
         tables = [_states_table(f) for f in self] or [STATE_SCHEMA.empty_table()]
         pq.write_table(pa.concat_tables(tables), folder / "states.parquet")
