@@ -14,6 +14,8 @@ Float64 = NDArray[np.float64]
 SMOOTHING_ITERATIONS: Final = 100
 SMOOTHING_STRENGTH: Final = 0.5
 """Share of the way to the middle of its two neighbours that a point moves in one iteration."""
+TOLERANCE: Final = 1e-6
+"""Voxels. A move is tried this much to all sides, so that no rounding can put a point across a face that it touches."""
 
 
 def smooth_path(
@@ -53,6 +55,18 @@ def _smooth(state: NDArray[np.uint8], cells: Float64, iterations: int, strength:
         for n in range(1, len(cells) - 1):
             trial[0], trial[2] = cells[n - 1], cells[n + 1]
             trial[1] = cells[n] + strength * (0.5 * (trial[0] + trial[2]) - cells[n])
-            if _path_is_free(state, trial):
+            if _is_free_with_tolerance(state, trial):
                 cells[n] = trial[1]
     return cells
+
+
+@numba.njit(cache=True, nogil=True)
+def _is_free_with_tolerance(state: NDArray[np.uint8], cells: Float64) -> bool:
+    """Whether the path is free under each of the 8 shifts to the corners of a tiny cube."""
+    shift = np.empty(3)
+    for corner in range(8):
+        for k in range(3):
+            shift[k] = TOLERANCE if corner >> k & 1 else -TOLERANCE
+        if not _path_is_free(state, cells + shift):
+            return False
+    return True

@@ -30,6 +30,8 @@ MARGIN: Final = 0.3
 """Metres of grid kept round the free space, so that walls are in it."""
 FLOOR_GAP: Final = 0.5
 """Metres. Holes in the floor up to twice as wide, and holes of any size that floor surrounds, count as floor."""
+FLOOR_FULLNESS: Final = 0.6
+"""The floor is the first layer below c with this share of the fullest layer's matter: no table has as much."""
 MIN_FLOOR_SHARE: Final = 0.25
 """A layer is the floor only if it is this share of the columns that hold any matter (else: terrain, no flat floor)."""
 FLOOR_DEPTH: Final = 0.3
@@ -62,8 +64,11 @@ def occupancy_from_splats(cloud: GaussianCloud, centre: ArrayLike, settings: Occ
     opacity = accumulated_opacity(cloud, origin, shape, settings.resolution)
     occupied = without_floaters(opacity >= settings.opacity_threshold, settings.min_component_voxels)
     grid = OccupancyGrid(np.where(occupied, OCCUPIED, UNKNOWN).astype(np.uint8), origin, settings.resolution)
+    grid = _cropped(grid, occupied)
     free = _reached(grid, groundless(grid, centre), centre)
-    return _cropped(OccupancyGrid(np.where(free, FREE, grid.state).astype(np.uint8), origin, settings.resolution))
+    return _cropped(
+        OccupancyGrid(np.where(free, FREE, grid.state).astype(np.uint8), grid.origin, grid.resolution), free
+    )
 
 
 def grid_bounds(
@@ -92,7 +97,7 @@ def grid_bounds(
 def accumulated_opacity(
     cloud: GaussianCloud, origin: NDArray[np.float64], shape: tuple[int, int, int], resolution: float
 ) -> NDArray[np.float32]:
-    """(X, Y, Z) share of its light that a ray loses on its way through each voxel, 0 to 1.
+    """(X, Y, Z) share of its light that a ray loses, on average, on its way through each voxel, 0 to 1.
 
     ``1 - exp(-sum_i alpha_i A_i w_i / resolution**2)``, where A_i = 2 pi s1 s2 is the area that Gaussian i covers
     when seen from its flat side (s1, s2: its two largest deviations) and w_i the share of its mass in the voxel. So a
@@ -116,13 +121,16 @@ def without_floaters(occupied: Bool, min_voxels: int) -> Bool:
 
 
 def floor_layer(grid: OccupancyGrid, centre: NDArray[np.float64]) -> int | None:
-    """Index of the layer of voxels that is the floor: the fullest one below c; None where there is no flat floor."""
+    """Index of the layer of voxels that is the floor: the first full one below c; None where there is no flat floor."""
     occupied = grid.state == OCCUPIED
     top = int(grid.index_of(centre - [0, 0, FLOOR_DEPTH])[2])
     counts = occupied.sum(axis=(0, 1))[: max(top, 0)]
-    if len(counts) == 0 or counts.max() < MIN_FLOOR_SHARE * occupied.any(axis=2).sum():
+    if len(counts) == 0 or counts.max() < MIN_FLOOR_SHARE * max(occupied.any(axis=2).sum(), 1):
         return None
-    return int(counts.argmax())
+    layer = int(np.flatnonzero(counts >= FLOOR_FULLNESS * counts.max())[-1])
+    while layer > 0 and counts[layer - 1] > counts[layer]:
+        layer -= 1  # carpets and noise above the floor
+    return layer
 
 
 def groundless(grid: OccupancyGrid, centre: NDArray[np.float64]) -> Bool:
@@ -172,12 +180,14 @@ def _seed(grid: OccupancyGrid, passable: Bool, centre: NDArray[np.float64]) -> t
     return int(i), int(j), int(k)
 
 
-def _cropped(grid: OccupancyGrid) -> OccupancyGrid:
-    """The part of the grid round its free space; what is cut off could only have been unknown."""
+def _cropped(grid: OccupancyGrid, kept: Bool) -> OccupancyGrid:
+    """The part of the grid within `MARGIN` of the box round ``kept`` (X, Y, Z); all of it if nothing is kept."""
+    if not kept.any():
+        return grid
     margin = int(np.ceil(MARGIN / grid.resolution))
-    free = np.argwhere(grid.state == FREE)
-    first = np.maximum(free.min(axis=0) - margin, 0)
-    last = np.minimum(free.max(axis=0) + 1 + margin, grid.state.shape)
+    indices = np.argwhere(kept)
+    first = np.maximum(indices.min(axis=0) - margin, 0)
+    last = np.minimum(indices.max(axis=0) + 1 + margin, grid.state.shape)
     part = grid.state[first[0] : last[0], first[1] : last[1], first[2] : last[2]]
     return OccupancyGrid(np.ascontiguousarray(part), grid.origin + first * grid.resolution, grid.resolution)
 

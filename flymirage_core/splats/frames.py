@@ -32,8 +32,8 @@ FACING: Final = 0.9
 BIN: Final = 0.02
 """Metres. Heights are counted in bins of this size and smoothed over `SMOOTHED` of them: floors are some cm thick."""
 SMOOTHED: Final = 5
-FLOOR_SHARE: Final = 0.35
-"""The floor is the lowest level whose surface is at least this share of the largest level's below c (not a table)."""
+FLOOR_SHARE: Final = 0.6
+"""The floor is the first level below c whose surface is at least this share of the largest one's there: no table is."""
 FLOOR_DEPTH: Final = 0.3
 """The floor lies at least this far below c, in the file's units times the scale."""
 PLAUSIBLE_CEILING: Final = (2.0, 6.0)
@@ -154,12 +154,12 @@ def estimate_up(cloud: GaussianCloud) -> tuple[str, str]:
 def estimate_floor(cloud: GaussianCloud, centre_z: float) -> tuple[float, str]:
     """Height of the floor of a z-up cloud, and how it was found.
 
-    The lowest level below c whose surface is at least `FLOOR_SHARE` of the largest one's; if there is no level surface
+    The first level below c whose surface is at least `FLOOR_SHARE` of the largest one's; if there is no level surface
     there at all, the height below which only 1 % of the matter lies.
     """
     heights, areas = _levels(cloud, 2)
     below = heights < centre_z - FLOOR_DEPTH
-    floor = _first_level(heights[below], areas[below])
+    floor = _first_level(heights[below][::-1], areas[below][::-1])
     if floor is None:
         return _quantile(cloud.means[:, 2], _area(cloud), 0.01), "lowest matter"
     return floor, "estimated"
@@ -173,10 +173,10 @@ def _matter(cloud: GaussianCloud) -> GaussianCloud:
 
 
 def _ceiling(cloud: GaussianCloud, centre_z: float) -> float | None:
-    """Height of the highest large level surface above c, by the floor's rule; None if there is none."""
+    """Height of the first large level surface above c, by the floor's rule; None if there is none."""
     heights, areas = _levels(cloud, 2)
     above = heights > centre_z + FLOOR_DEPTH
-    return _first_level(heights[above][::-1], areas[above][::-1])
+    return _first_level(heights[above], areas[above])
 
 
 def _first_level(heights: Float64, areas: Float64) -> float | None:
