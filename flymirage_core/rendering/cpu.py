@@ -122,7 +122,7 @@ class SplatTable:
             np.log2(np.minimum(cloud.opacities[kept], 1)),
             kept.astype(np.uint32),
             bounding_balls(means, np.float32(kernels.EXTENT) * scales.max(axis=1, initial=0)),
-            np.ascontiguousarray(cloud.sh[kept].reshape(len(kept), -1)),
+            np.ascontiguousarray(cloud.sh[kept].reshape(len(kept), 3 * cloud.sh.shape[1])),
         )
 
     def arrays(self) -> kernels.Splats:
