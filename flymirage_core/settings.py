@@ -144,6 +144,12 @@ class FrameSettings(Section):
     pitch_deg: float = 0.0
     """Downward tilt of the camera on the body."""
 
+    @model_validator(mode="after")
+    def _even(self) -> "FrameSettings":
+        if self.width % 2 or self.height % 2:
+            raise ValueError(f"frames are {self.width} x {self.height} pixels: H.264 needs an even width and height")
+        return self
+
 
 class VerdictSettings(Section):
     """Thresholds of the measured gates."""

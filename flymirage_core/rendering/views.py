@@ -77,7 +77,11 @@ class PosedViews:
 
     @staticmethod
     def load(folder: Path) -> "PosedViews":
-        table = pd.read_parquet(folder / "views.parquet")
+        """A handle on a saved folder; raises `ProductError` if its table is missing or torn."""
+        try:
+            table = pd.read_parquet(folder / "views.parquet")
+        except (OSError, ValueError) as error:
+            raise ProductError(f"{folder / 'views.parquet'} is missing or torn; materialise the views again") from error
         cameras = tuple(
             Camera(
                 Intrinsics(r["width"], r["height"], r["fx"], r["fy"], r["cx"], r["cy"]),

@@ -1,0 +1,78 @@
+"""Videos: depth without loss, RGB near enough, the same bytes again, and damage found."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from flymirage_core.errors import InputError, ProductError
+from flymirage_core.rendering.video import read_depth, read_rgb, write_depth, write_rgb
+
+
+def smooth_pictures(count: int, width: int = 64, height: int = 48) -> list[np.ndarray]:
+    """Slowly changing colours, as a camera sees."""
+    y, x = np.mgrid[:height, :width]
+    planes = [[128 + 100 * np.sin(x / 17 + t / 9 + c) * np.cos(y / 13 - c) for c in range(3)] for t in range(count)]
+    return [np.stack(plane, axis=-1).astype(np.uint8) for plane in planes]
+
+
+@settings(deadline=None, max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.integers(8, 50), st.integers(8, 50))
+def test_any_depth_comes_back_exactly(tmp_path: Path, seed: int, count: int, width: int, height: int):
+    frames = np.random.default_rng(seed).integers(0, 2**16, (count, height, width)).astype(np.uint16)
+    assert write_depth(tmp_path / "depth.mkv", iter(frames), 10) == count
+    back = list(read_depth(tmp_path / "depth.mkv", count))
+    assert back[0].dtype == np.uint16
+    np.testing.assert_array_equal(back, frames)
+
+
+def test_colours_come_back_within_a_few_grey_levels_and_without_a_tint(tmp_path):
+    frames = smooth_pictures(9)
+    write_rgb(tmp_path / "rgb.mp4", iter(frames), 10)
+    error = np.array(list(read_rgb(tmp_path / "rgb.mp4", 9)), float) - frames
+    assert np.sqrt(np.mean(error**2)) < 3 and np.abs(error.mean(axis=(0, 1, 2))).max() < 0.6
+
+
+def test_the_same_frames_give_the_same_bytes(tmp_path):
+    frames = smooth_pictures(5)
+    for name in ("a", "b"):
+        write_rgb(tmp_path / f"{name}.mp4", frames, 10)
+        write_depth(tmp_path / f"{name}.mkv", [f[:, :, 0].astype(np.uint16) * 100 for f in frames], 10)
+    assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
+    assert (tmp_path / "a.mkv").read_bytes() == (tmp_path / "b.mkv").read_bytes()
+
+
+def test_rgb_video_of_an_odd_size_is_refused_in_one_sentence(tmp_path):
+    with pytest.raises(InputError, match=r"rgb.mp4: 63 x 48 pixels; .*even width"):
+        write_rgb(tmp_path / "rgb.mp4", smooth_pictures(1, width=63), 10)
+
+
+def test_a_frame_of_another_size_is_refused(tmp_path):
+    frames = [np.zeros((8, 8), np.uint16), np.zeros((8, 10), np.uint16)]
+    with pytest.raises(InputError, match="frame 1 is 10 x 8 pixels, the first was 8 x 8"):
+        write_depth(tmp_path / "depth.mkv", frames, 10)
+
+
+def test_a_video_without_frames_is_refused(tmp_path):
+    with pytest.raises(InputError, match="no frame"):
+        write_rgb(tmp_path / "rgb.mp4", [], 10)
+
+
+@pytest.mark.parametrize("kept", [0.0, 0.01, 0.5, 0.9])
+@pytest.mark.parametrize("kind", ["rgb.mp4", "depth.mkv"])
+def test_a_torn_video_is_told_from_a_whole_one(tmp_path, kind, kept):
+    path, frames = tmp_path / kind, smooth_pictures(20)
+    if kind == "rgb.mp4":
+        write_rgb(path, frames, 10)
+    else:
+        write_depth(path, [f[:, :, 0].astype(np.uint16) for f in frames], 10)
+    path.write_bytes(path.read_bytes()[: int(path.stat().st_size * kept)])
+    with pytest.raises(ProductError, match="materialise `frames` again"):
+        list((read_rgb if kind == "rgb.mp4" else read_depth)(path, 20))
+
+
+def test_a_missing_video_is_one_sentence(tmp_path):
+    with pytest.raises(ProductError, match=r"rgb.mp4 is missing or torn"):
+        next(read_rgb(tmp_path / "rgb.mp4", 1))
