@@ -106,7 +106,9 @@ def _path_to(
     path = smooth_path(inflated, shortest_path(inflated, start, goal))
     positions = resample_path(path, settings.rig_spacing)  # (K, 3)
     gap = float(box.distance(positions[-1]))
-    return ExplorationPath(box, positions, smooth_headings(positions), gap, gap <= settings.stand_off + inflated.resolution)
+    return ExplorationPath(
+        box, positions, smooth_headings(positions), gap, gap <= settings.stand_off + inflated.resolution
+    )
 
 
 def _viewpoint(box: ObjectBox, start: Float64, places: Float64, stand_off: float) -> Float64:

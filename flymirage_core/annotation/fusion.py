@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-import cv2
+import numba
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
@@ -46,21 +46,16 @@ class Detection:
     camera_position: Vector3  # its optical centre
 
 
-def footprint_corners(box: GravityAlignedBox) -> NDArray[np.float32]:
+def footprint_corners(box: GravityAlignedBox) -> NDArray[np.float64]:
     """(4, 2) corners of the box's plan in world xy, counter-clockwise."""
     c, s = np.cos(box.yaw), np.sin(box.yaw)
     half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.asarray(box.size[:2]) / 2  # (4, 2)
-    return (half @ np.array([[c, s], [-s, c]]) + box.centre[:2]).astype(np.float32)
+    return np.asarray(half @ np.array([[c, s], [-s, c]]) + box.centre[:2], np.float64)
 
 
 def footprint_overlap(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
     """Square metres that the two plans share."""
-    # Near b, so that float32 keeps its digits in worlds far from the origin.
-    shift = np.asarray(b.centre[:2], np.float64)
-    area, _ = cv2.intersectConvexConvex(
-        (footprint_corners(a) - shift).astype(np.float32), (footprint_corners(b) - shift).astype(np.float32)
-    )
-    return float(area)
+    return float(_convex_overlap(footprint_corners(a), footprint_corners(b)))
 
 
 def yaw_iou(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
@@ -104,7 +99,9 @@ def _clusters(detections: Sequence[Detection], min_iou: float) -> list[list[int]
     links: list[tuple[int, int]] = []
     for i in range(len(detections)):
         gaps = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1) - radii[i + 1 :] - radii[i]
-        links += [(i, int(j)) for j in np.flatnonzero(gaps < 0) + i + 1 if yaw_iou(detections[i], detections[j]) >= min_iou]
+        links += [
+            (i, int(j)) for j in np.flatnonzero(gaps < 0) + i + 1 if yaw_iou(detections[i], detections[j]) >= min_iou
+        ]
     rows, columns = np.array(links, int).reshape(-1, 2).T
     graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(detections), len(detections)))
     count, component = connected_components(graph, directed=False)
@@ -157,3 +154,36 @@ def _turned(size: Vector3, quarter_turns: int) -> Vector3:
 def _quarter_turns(angle: float) -> int:
     """How many quarter turns are nearest to ``angle``."""
     return round(angle / (np.pi / 2))
+
+
+@numba.njit(cache=True, nogil=True)
+def _convex_overlap(subject: NDArray[np.float64], clip: NDArray[np.float64]) -> float:
+    """Area shared by two convex polygons (A, 2) and (B, 2), counter-clockwise (Sutherland & Hodgman 1974).
+
+    OpenCV's intersectConvexConvex is not used: rectangles that share a part of an edge, as boxes in one room do, get areas
+    that are wrong by up to their whole size.
+    """
+    polygon = np.empty((16, 2))
+    clipped = np.empty((16, 2))
+    count = len(subject)
+    polygon[:count] = subject
+    for edge in range(len(clip)):
+        ax, ay = clip[edge]
+        dx, dy = clip[(edge + 1) % len(clip), 0] - ax, clip[(edge + 1) % len(clip), 1] - ay
+        kept = 0
+        for k in range(count):
+            p, q = polygon[k], polygon[(k + 1) % count]
+            side_p = dx * (p[1] - ay) - dy * (p[0] - ax)
+            side_q = dx * (q[1] - ay) - dy * (q[0] - ax)
+            if side_p >= 0:
+                clipped[kept] = p
+                kept += 1
+            if (side_p > 0 and side_q < 0) or (side_p < 0 and side_q > 0):
+                clipped[kept] = p + (q - p) * (side_p / (side_p - side_q))
+                kept += 1
+        polygon, clipped, count = clipped, polygon, kept
+    area = 0.0
+    for k in range(count):
+        p, q = polygon[k] - polygon[0], polygon[(k + 1) % count] - polygon[0]
+        area += 0.5 * (p[0] * q[1] - p[1] * q[0])
+    return max(area, 0.0)

@@ -1,0 +1,186 @@
+"""Boxes round points: the yaw rectangle of a plan, and where a box goes on behind what was seen."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flymirage_core.annotation.fusion import footprint_overlap
+from flymirage_core.annotation.room_structure import RoomStructure
+
+Float32 = NDArray[np.float32]
+Float64 = NDArray[np.float64]
+
+TRIM: Final = 0.6
+"""Per cent of the points that each side of a box may leave out: flying pixels."""
+HEIGHT_TRIM: Final = 0.5
+SNAP: Final = 1.08
+"""The room's own direction is taken if its rectangle is at most this much larger than the smallest."""
+SURFACE_MARGIN: Final = 0.03
+"""Metres added to both sides when areas are compared, so that thin things have one."""
+MAX_FIT_POINTS: Final = 4000
+ON_FLOOR: Final = 0.16
+"""Metres above the floor below which a thing stands on it: the lowest centimetres are culled with the floor."""
+MIN_SUPPORT_SHARE: Final = 0.3
+"""Share of a floating box's plan that must lie over another for it to stand there."""
+MAX_SUPPORT_GAP: Final = 1.5
+"""Metres down to which a floating thing is taken to reach: thin legs and poles are not seen."""
+NEAR_WALL: Final = 0.12
+MAX_WALL_GAP: Final = 0.10
+"""Metres to a wall that are taken to belong to the thing: its back is not seen."""
+MAX_TALL_WALL_GAP: Final = 0.75
+MAX_TALL_DEPTH: Final = 0.85
+TALL: Final = 1.35
+"""Things that reach higher above the floor are seen from the front only, so their depth is guessed up to the wall."""
+SEEN_DEPTH: Final = 0.25
+"""... but only where less than this of their depth was seen."""
+UNDER_CEILING: Final = 0.6
+
+
+@dataclass(frozen=True)
+class Footprint:
+    """A rectangle in the plan; metres, yaw in [0, pi/2)."""
+
+    centre: Float64  # (2,)
+    size: Float64  # (2,) full lengths along its own axes
+    yaw: float
+
+    @property
+    def area(self) -> float:
+        return float(self.size[0] * self.size[1])
+
+    def local(self, points: Float32 | Float64) -> Float64:
+        """(N, 2) plan coordinates of points (N, 2 or 3) along the rectangle's axes, from its centre."""
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        return np.asarray((points[:, :2] - self.centre) @ np.array([[c, -s], [s, c]]))
+
+    def share_inside(self, points: Float32 | Float64, margin: float) -> float:
+        """Share of the points (N, 3) whose plan lies inside, grown by ``margin`` on each side."""
+        return float((np.abs(self.local(points)) < self.size / 2 + margin).all(axis=1).mean())
+
+
+@dataclass(frozen=True)
+class FittedBox:
+    """A box and the evidence for it. World frame, metres."""
+
+    centre: tuple[float, float, float]
+    size: tuple[float, float, float]
+    yaw: float
+    members: NDArray[np.intp]  # indices of the fused points it was made from
+    on_wall: bool = False  # a flat thing found on a wall's own surface
+    hanging: bool = False  # fixed to the ceiling
+
+    @property
+    def bottom(self) -> float:
+        return self.centre[2] - self.size[2] / 2
+
+    @property
+    def top(self) -> float:
+        return self.centre[2] + self.size[2] / 2
+
+    @property
+    def volume(self) -> float:
+        return float(np.prod(self.size))
+
+
+def fit_footprint(points: Float32, room_yaw: float, trim: float = TRIM) -> Footprint:
+    """The smallest rectangle round the plan of points (N, 3), in the room's direction if that costs little.
+
+    ``trim`` per cent of the points may lie beyond each side.
+    """
+    step = -(-len(points) // MAX_FIT_POINTS)
+    xy = points[::step, :2].astype(np.float64)
+    snapped = _rectangle(xy, room_yaw % (np.pi / 2), trim)
+    coarse = min((_rectangle(xy, a, trim) for a in np.radians(np.arange(0, 90, 6.0))), key=_padded_area)
+    near = coarse.yaw + np.radians([-4.5, -3, -1.5, 0, 1.5, 3, 4.5])
+    best = min((_rectangle(xy, a % (np.pi / 2), trim) for a in near), key=_padded_area)
+    return snapped if _padded_area(snapped) < SNAP * _padded_area(best) else best
+
+
+def _rectangle(xy: Float64, yaw: float, trim: float) -> Footprint:
+    c, s = np.cos(yaw), np.sin(yaw)
+    rotation = np.array([[c, -s], [s, c]])  # columns are the axes
+    along = xy @ rotation
+    low, high = _trimmed_range(along, trim)
+    return Footprint(rotation @ ((low + high) / 2), high - low, float(yaw))
+
+
+def _trimmed_range(values: Float64, trim: float) -> tuple[Float64, Float64]:
+    """Per column, the values that ``trim`` per cent lie below and above: order statistics, no interpolation."""
+    n = len(values)
+    k = int(round(trim / 100 * (n - 1)))
+    if k == 0:
+        return values.min(axis=0), values.max(axis=0)
+    ordered = np.partition(values, (k, n - 1 - k), axis=0)
+    return ordered[k], ordered[n - 1 - k]
+
+
+def _padded_area(footprint: Footprint) -> float:
+    return float((footprint.size + SURFACE_MARGIN).prod())
+
+
+def fit_box(points: Float32, members: NDArray[np.intp], structure: RoomStructure) -> FittedBox:
+    """The box round ``points[members]``, down to the floor if it nearly touches it, and back to a wall close behind."""
+    cloud = points[members]
+    plan = fit_footprint(cloud, structure.yaw)
+    low, high = _trimmed_range(cloud[:, 2:].astype(np.float64), HEIGHT_TRIM)
+    bottom, top = float(low[0]), float(high[0])
+    floor = float(structure.floor_map.at(plan.centre[None])[0])
+    if bottom - floor < ON_FLOOR:
+        bottom = min(floor, bottom)
+    box = FittedBox(
+        (float(plan.centre[0]), float(plan.centre[1]), (bottom + top) / 2),
+        (float(plan.size[0]), float(plan.size[1]), top - bottom),
+        plan.yaw,
+        members,
+    )
+    return _reaching_wall(box, structure, tall=top - floor > TALL and bottom <= floor)
+
+
+def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> FittedBox:
+    """The box grown to walls right behind it, its unseen back."""
+    for wall in structure.walls:
+        for axis in (0, 1):
+            angle = box.yaw + axis * np.pi / 2
+            if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) < 0.97:
+                continue
+            depth = box.size[axis]
+            gap = float(np.dot(wall.normal, box.centre[:2])) - wall.offset - depth / 2
+            guessed = tall and depth < SEEN_DEPTH and depth + gap < MAX_TALL_DEPTH
+            if 0.02 < gap < (MAX_TALL_WALL_GAP if guessed else MAX_WALL_GAP):
+                size = list(box.size)
+                size[axis] += gap
+                x, y = np.array(box.centre[:2]) - wall.normal * gap / 2
+                box = replace(box, centre=(float(x), float(y), box.centre[2]), size=(size[0], size[1], size[2]))
+    return box
+
+
+def settle(boxes: Sequence[FittedBox], structure: RoomStructure) -> list[FittedBox]:
+    """Nothing floats: boxes go down to the support below them, unless they hang from the ceiling or on a wall."""
+    return [_settled(box, boxes, structure) for box in boxes]
+
+
+def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> FittedBox:
+    floor = float(structure.floor_map.at(np.array([box.centre[:2]]))[0])
+    if box.bottom - floor <= ON_FLOOR:
+        return box
+    if structure.ceiling is not None and structure.ceiling - box.top < UNDER_CEILING and box.bottom - floor > 1.5:
+        return replace(box, hanging=True)
+    support = floor
+    for other in boxes:
+        around = other.top > box.top and other.bottom < box.bottom
+        if other is box or (other.top > box.bottom + 0.10 and not around):
+            continue
+        if footprint_overlap(box, other) > MIN_SUPPORT_SHARE * box.size[0] * box.size[1]:
+            support = max(support, min(other.top, box.bottom))
+    gap = box.bottom - support
+    on_wall = any(
+        abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - min(box.size[:2]) / 2 < NEAR_WALL
+        for w in structure.walls
+    )
+    if gap <= 0.02 or gap >= MAX_SUPPORT_GAP or (on_wall and gap > 0.3):
+        return box
+    x, y, z = box.centre
+    return replace(box, centre=(x, y, z - gap / 2), size=(box.size[0], box.size[1], box.size[2] + gap))

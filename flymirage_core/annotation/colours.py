@@ -1,0 +1,90 @@
+"""Colours as people name them, and colours as segmentation compares them. CIELAB, D65."""
+
+from typing import Final
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Float32 = NDArray[np.float32]
+
+LIGHTNESS_WEIGHT: Final = 0.35
+"""Lightness counts this much in `colour_step`: shading changes it most."""
+REFERENCE_LIGHTNESS: Final = 50.0
+MIN_LIGHTNESS: Final = 25.0
+"""Below this, chroma is mostly noise and is not amplified further."""
+GREY_CHROMA: Final = 9.0
+"""Colours with less chroma are named by lightness alone."""
+GREYS: Final = ((14.0, "black"), (38.0, "dark grey"), (66.0, "grey"), (86.0, "light grey"), (101.0, "white"))
+"""Lightness up to which each name holds."""
+HUES: Final = (
+    ("red", 28.0),
+    ("orange", 62.0),
+    ("yellow", 94.0),
+    ("green", 145.0),
+    ("teal", 200.0),
+    ("blue", 272.0),
+    ("purple", 318.0),
+    ("pink", 358.0),
+)
+"""Basic names and their hue angles in degrees (atan2(b, a) of CIELAB)."""
+DARK: Final = 38.0
+LIGHT: Final = 72.0
+
+
+def to_lab(rgb: ArrayLike) -> Float32:
+    """CIELAB (N, 3), L 0..100, of sRGB colours (N, 3) 0..255."""
+    colours = np.asarray(rgb, np.float32).reshape(1, -1, 3) / 255
+    return np.asarray(cv2.cvtColor(np.ascontiguousarray(colours), cv2.COLOR_RGB2LAB)[0], np.float32)
+
+
+def shading_free(lab: Float32) -> Float32:
+    """Lab (N, 3) with a and b scaled to one lightness: shading changes them in proportion."""
+    out = lab.copy()
+    scale = (REFERENCE_LIGHTNESS + 16) / (np.maximum(lab[:, :1], MIN_LIGHTNESS) + 16)
+    out[:, 1:] *= scale
+    return out
+
+
+def colour_step(a: Float32, b: Float32) -> Float32:
+    """Difference (...,) of two `shading_free` colours (..., 3)."""
+    difference = a - b
+    difference = difference * np.array([LIGHTNESS_WEIGHT, 1, 1], np.float32)
+    return np.asarray(np.sqrt((difference**2).sum(axis=-1)), np.float32)
+
+
+def colour_name(lab: ArrayLike) -> str:
+    """A basic colour name with "dark" or "light" where that helps.
+
+    >>> colour_name(to_lab([[200, 30, 30]])[0]), colour_name(to_lab([[20, 60, 20]])[0]), colour_name(to_lab([[250] * 3])[0])
+    ('red', 'dark green', 'white')
+    """
+    lightness, a, b = (float(x) for x in np.asarray(lab, float))
+    chroma = float(np.hypot(a, b))
+    if chroma < GREY_CHROMA:
+        return next(name for limit, name in GREYS if lightness < limit or limit > 100)
+    hue = float(np.degrees(np.arctan2(b, a)) % 360)
+    name = min(HUES, key=lambda entry: abs((hue - entry[1] + 180) % 360 - 180))[0]
+    return _shaded(name, hue, lightness, chroma)
+
+
+def _shaded(name: str, hue: float, lightness: float, chroma: float) -> str:
+    """The hue's everyday name at this lightness and chroma: dull and dark orange is brown, pale yellow is beige."""
+    warm = 25 < hue < 105
+    if warm and lightness >= LIGHT and chroma < 30:
+        return "beige" if chroma > 1.4 * GREY_CHROMA or lightness < 88 else "cream"
+    if warm and name != "yellow" and lightness < 62 and chroma < 55 and not (name == "red" and chroma > 45):
+        return "dark brown" if lightness < 32 else "brown"
+    if warm and name == "yellow" and lightness < 60:
+        return "olive" if hue > 98 else "brown"
+    if warm and chroma < 35:
+        return "light brown"
+    if name == "pink" and lightness < 45:
+        return "dark red" if hue > 345 else "purple"
+    if name == "red" and lightness > 62:
+        return "pink"
+    if lightness < DARK and name not in ("orange", "yellow"):
+        return f"dark {name}"
+    if lightness > LIGHT and name in ("green", "teal", "blue", "purple"):
+        return f"light {name}"
+    return name

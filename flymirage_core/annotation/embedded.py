@@ -1,0 +1,212 @@
+"""`EmbeddedAnnotator`: objects from pixels and depth alone, with no network, no GPU and no learned weights.
+
+Fuse the pixels of all views, take the building away, cut what is left by colour, join what belongs together, fit boxes, name
+them. Each step is a file of this room.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flymirage_core.annotation.box_fitting import ON_FLOOR, FittedBox, fit_box, settle
+from flymirage_core.annotation.boxes import BoxMap, ObjectBox
+from flymirage_core.annotation.carving import solid, supporting_frames
+from flymirage_core.annotation.colours import colour_name, colour_step, shading_free, to_lab
+from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points
+from flymirage_core.annotation.fusion import yaw_iou
+from flymirage_core.annotation.labels import Support, name_box, share_of_green
+from flymirage_core.annotation.merging import merge_parts
+from flymirage_core.annotation.normals import surface_normals
+from flymirage_core.annotation.parts import PartSet, Surface
+from flymirage_core.annotation.room_structure import RoomStructure, find_structure
+from flymirage_core.annotation.segmentation import (
+    MIN_OBJECT_POINTS,
+    colour_parts,
+    neighbour_edges,
+    smoothed_colours,
+    split_standing,
+)
+from flymirage_core.annotation.wall_objects import wall_objects
+from flymirage_core.rendering.views import View
+from flymirage_core.settings import AnnotationSettings
+
+Float32 = NDArray[np.float32]
+
+STRUCTURE_VOXEL: Final = 0.05
+STRUCTURE_FRAMES: Final = 48
+STRUCTURE_RANGE: Final = 12.0
+"""Metres; the building is found from about so many views, without the pass's own distance limit."""
+NORMAL_RADIUS: Final = 3.0
+"""Voxels within which points shape a normal."""
+NORMAL_NEIGHBOURS: Final = 16
+STRUCTURE_NEIGHBOURS: Final = 12
+MAX_SIDE: Final = 4.5
+"""Metres; larger things are a part of the building that was not recognised."""
+MIN_SIDE: Final = 0.08
+"""Metres; a box whose longest side is less is noise."""
+DUPLICATE_IOU: Final = 0.5
+MIN_SUPPORT_POINTS: Final = 5
+"""Points of an object that a view must hit to support it."""
+FULL_EVIDENCE: Final = 12
+"""Supporting views from which more add nothing to the score."""
+
+
+class EmbeddedAnnotator:
+    """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
+
+    name = "embedded"
+    version = "1"
+
+    def __init__(self, settings: AnnotationSettings) -> None:
+        self.settings = settings
+
+    def annotate(self, views: Iterable[View], max_distance: float) -> BoxMap:
+        """See `Annotator.annotate`; only pixels within ``max_distance`` metres of their camera make objects."""
+        frames = frames_of(views)
+        structure = self.structure(frames)
+        cloud = fuse_points(frames, self.settings.voxel, max_distance)
+        cloud = _solid_cloud(cloud, structure, frames)
+        boxes = propose_boxes(cloud, structure, self.settings.voxel)
+        return self._described(boxes, cloud, structure, frames, max_distance)
+
+    def structure(self, frames: Sequence[Frame]) -> RoomStructure:
+        """The building, from a coarse cloud of views spread over the sequence."""
+        step = max(1, len(frames) // STRUCTURE_FRAMES)
+        cloud = fuse_points(frames[::step], STRUCTURE_VOXEL, STRUCTURE_RANGE)
+        normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
+        return find_structure(cloud.points, normals, STRUCTURE_VOXEL)
+
+    def _described(
+        self,
+        boxes: Sequence[FittedBox],
+        cloud: FusedPoints,
+        structure: RoomStructure,
+        frames: Sequence[Frame],
+        max_distance: float,
+    ) -> BoxMap:
+        owner = np.full(len(cloud), -1, np.int64)
+        for k, box in enumerate(boxes):
+            owner[box.members] = k
+        support = supporting_frames(cloud.points, owner, len(boxes), frames, max_distance, MIN_SUPPORT_POINTS)
+        annotator = f"{self.name} {self.version}"
+        described = [
+            _object_box(k, box, boxes, cloud, structure, int(support[k]), annotator) for k, box in enumerate(boxes)
+        ]
+        return BoxMap(tuple(described))
+
+
+def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
+    """Boxes of the objects in a cloud of solid points, floor to ceiling and then by place."""
+    objects = np.flatnonzero(~structure.contains(cloud.points))
+    surface = _surface(cloud[objects], structure, voxel)
+    parts = colour_parts(surface)
+    split_standing(parts)
+    merge_parts(parts)
+    boxes = settle(_fitted(parts, objects, cloud, structure), structure)
+    boxes = [box for box in boxes if _is_object(box, structure)]
+    boxes += wall_objects(cloud.points, shading_free(to_lab(cloud.colours)), structure)
+    return sorted(_without_duplicates(boxes), key=lambda b: (round(b.bottom, 2), b.centre))
+
+
+def _solid_cloud(cloud: FusedPoints, structure: RoomStructure, frames: Sequence[Frame]) -> FusedPoints:
+    """The cloud without points that views see through; the building's own points are not tested."""
+    kept = structure.contains(cloud.points)
+    free = np.flatnonzero(~kept)
+    kept[free] = solid(cloud.points[free], frames)
+    return cloud[kept]
+
+
+def _surface(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> Surface:
+    edges = neighbour_edges(cloud.voxels)
+    colours = smoothed_colours(shading_free(to_lab(cloud.colours)), edges) if len(cloud) else cloud.colours
+    return Surface(
+        points=cloud.points,
+        colours=colours,
+        normals=surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS),
+        edges=edges,
+        steps=colour_step(colours[edges[:, 0]], colours[edges[:, 1]]),
+        voxel=voxel,
+        floor=structure.floor,
+        yaw=structure.yaw,
+    )
+
+
+def _fitted(parts: PartSet, objects: NDArray[np.intp], cloud: FusedPoints, structure: RoomStructure) -> list[FittedBox]:
+    return [
+        fit_box(cloud.points, objects[parts.parts[k].members], structure)
+        for k in sorted(parts.parts)
+        if len(parts.parts[k]) >= MIN_OBJECT_POINTS
+    ]
+
+
+def _is_object(box: FittedBox, structure: RoomStructure) -> bool:
+    """Whether a box is more than a sliver: left-over edges of walls, floor and ceiling are thin and few points."""
+    short, long = sorted(box.size[:2])
+    height = box.size[2]
+    clearance = box.bottom - structure.floor
+    if max(box.size) < MIN_SIDE or max(box.size) > MAX_SIDE:
+        return False
+    trim = (height < 0.16 and clearance > 1.9) or (height < 0.12 and clearance < 0.1)
+    strip = short < 0.05 and height < 0.35
+    stick = long < 0.14 and ((height < 0.40 and clearance < 0.3) or (height > 0.4 and len(box.members) < 150))
+    speck = len(box.members) < 2 * MIN_OBJECT_POINTS and box.volume < 0.004
+    return not (trim or strip or stick or speck)
+
+
+def _without_duplicates(boxes: Sequence[FittedBox]) -> list[FittedBox]:
+    """Of boxes that overlap by `DUPLICATE_IOU`, the one made from the most points."""
+    kept: list[FittedBox] = []
+    for box in sorted(boxes, key=lambda b: -len(b.members)):
+        if all(yaw_iou(box, other) < DUPLICATE_IOU for other in kept):
+            kept.append(box)
+    return kept
+
+
+def _object_box(
+    number: int,
+    box: FittedBox,
+    boxes: Sequence[FittedBox],
+    cloud: FusedPoints,
+    structure: RoomStructure,
+    support: int,
+    annotator: str,
+) -> ObjectBox:
+    lab = to_lab(cloud.colours[box.members])  # (M, 3)
+    label = name_box(box.size, _support_of(box, boxes, structure), share_of_green(lab))
+    return ObjectBox(
+        object_id=number,
+        label=label.noun,
+        centre=box.centre,
+        size=box.size,
+        yaw=box.yaw,
+        score=float(0.5 * label.fit + 0.5 * min(1.0, support / FULL_EVIDENCE)),
+        label_source="size_prior",
+        colour=colour_name(np.median(lab, axis=0)),
+        material="",
+        supporting_frames=support,
+        nearest_camera_distance=float(cloud.nearest[box.members].min()),
+        annotator=annotator,
+    )
+
+
+def _support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> Support:
+    """What a box rests on, judged from its place."""
+    if box.on_wall:
+        return Support.WALL
+    if box.hanging:
+        return Support.CEILING
+    if box.bottom - structure.floor < ON_FLOOR:
+        return Support.FLOOR
+    carried = any(other is not box and abs(other.top - box.bottom) < 0.1 and _over(box, other) for other in boxes)
+    near_wall = any(
+        abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - max(box.size[:2]) / 2 < 0.15 for w in structure.walls
+    )
+    return Support.WALL if near_wall and not carried else Support.SURFACE
+
+
+def _over(box: FittedBox, other: FittedBox) -> bool:
+    return bool(
+        np.hypot(box.centre[0] - other.centre[0], box.centre[1] - other.centre[1]) < max(other.size[:2]) / 2 + 0.05
+    )

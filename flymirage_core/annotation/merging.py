@@ -1,0 +1,212 @@
+"""Parts joined to objects: one rule a function, each for a kind of thing that colour alone falls apart.
+
+No rule joins through a support: what stands on a broad level face stays its own object, unless it has the colour of what
+carries it and was not cut off it before.
+"""
+
+from typing import Final
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from flymirage_core.annotation.colours import colour_step
+from flymirage_core.annotation.parts import Part, PartSet
+from flymirage_core.annotation.segmentation import SUPPORT_AREA
+
+MAX_ROUNDS: Final = 12
+SAME_COLOUR: Final = 9.0
+"""Colour step up to which touching parts are one thing."""
+IDENTICAL_COLOUR: Final = 3.0
+"""... even where one stands on the other."""
+SIMILAR_COLOUR: Final = 14.0
+"""Colour step up to which parts that nearly touch are one thing."""
+JOINT_GAP: Final = 0.10
+"""Metres that a joint too thin to be seen may bridge."""
+LARGE: Final = 1.0
+"""Metres; two things that are both longer are never bridged."""
+MAX_ABSORBED: Final = 0.34
+"""Metres; larger pieces are not swallowed by what is round them: books in a shelf are, a chair under a table is not."""
+MAX_POLE_GAP: Final = 1.1
+"""Metres between a foot and a shade whose pole was lost."""
+MAX_LEG_POINTS: Final = 400
+
+
+def merge_parts(parts: PartSet) -> None:
+    """Apply all rules, in this order."""
+    for _ in range(MAX_ROUNDS):
+        if not _join_touching(parts):
+            break
+    _join_lost_poles(parts)
+    for _ in range(3):
+        if not _join_lost_joints(parts):
+            break
+    _join_panels(parts)
+    _join_legs(parts)
+
+
+def _join_touching(parts: PartSet) -> bool:
+    """One round over all contacts, the longest first; whether anything was joined."""
+    changed = False
+    for i, j, contact in parts.contacts():
+        if i not in parts.parts or j not in parts.parts:
+            continue
+        a, b = parts.parts[i], parts.parts[j]
+        lower, upper = (a, b) if a.centre[2] < b.centre[2] else (b, a)
+        step = float(colour_step(a.colour, b.colour))
+        stands = _stands_on(upper, lower)
+        if (
+            _same_thing(a, b, step, contact, stands and (step > IDENTICAL_COLOUR or upper.standing))
+            or _piece_inside(a, b, stands, upper)
+            or (not stands and _stacked(lower, upper))
+        ):
+            parts.join(i, j)
+            changed = True
+    return changed
+
+
+def _stands_on(upper: Part, lower: Part) -> bool:
+    """Whether ``upper`` is carried by a broad level face of ``lower`` that is a good deal larger."""
+    area, height = lower.table
+    bottom = upper.lower[2]
+    return bool(
+        area > SUPPORT_AREA
+        and bottom > height - 0.07
+        and bottom > lower.upper[2] - 0.5
+        and upper.footprint.area < 0.7 * lower.footprint.area
+        and lower.footprint.share_inside(upper.points, 0.04) > 0.7
+    )
+
+
+def _same_thing(a: Part, b: Part, step: float, contact: int, kept_apart: bool) -> bool:
+    return step < SAME_COLOUR and contact >= max(4, 0.02 * min(len(a), len(b))) and not kept_apart
+
+
+def _piece_inside(a: Part, b: Part, stands: bool, upper: Part) -> bool:
+    """A small part within the box of a larger one: books in a shelf, knobs, patterns."""
+    large, small = (a, b) if len(a) >= len(b) else (b, a)
+    if small.extent.max() >= MAX_ABSORBED or (stands and small is upper and small.upper[2] > large.upper[2] - 0.02):
+        return False
+    within = small.upper[2] < large.upper[2] + 0.03 and small.lower[2] > large.lower[2] - 0.03
+    return bool(within and large.footprint.share_inside(small.points, 0.02) > 0.8)
+
+
+def _stacked(lower: Part, upper: Part) -> bool:
+    """One above the other and centred (lamp, plant, television's foot), or covering it (mattress on its frame)."""
+    if upper.lower[2] <= lower.upper[2] - 0.12:
+        return False
+    a, b = lower.footprint, upper.footprint
+    if np.linalg.norm(a.centre - b.centre) < 0.2 * min(a.size.max(), b.size.max()) + 0.05:
+        return True
+    if b.area > 0.6 * a.area and a.share_inside(upper.points, 0.06) > 0.75:
+        return True
+    overhung = upper.lower[2] < lower.upper[2] + 0.08 and min(a.area, b.area) > 0.25
+    return bool(overhung and b.share_inside(lower.points, 0.05) > 0.85)
+
+
+def _join_lost_poles(parts: PartSet) -> None:
+    """A foot on the floor and a shade right above it, whose pole no view resolved."""
+    order = sorted(parts.parts, key=lambda k: (float(parts.parts[k].centre[2]), k))
+    for n, i in enumerate(order):
+        for j in order[n + 1 :]:
+            if i not in parts.parts:
+                break
+            if j in parts.parts and _foot_and_shade(parts.parts[i], parts.parts[j]) and not _between(parts, i, j):
+                i = parts.join(i, j)
+
+
+def _foot_and_shade(foot: Part, shade: Part) -> bool:
+    gap = float(shade.lower[2] - foot.upper[2])
+    return bool(
+        foot.clearance <= 0.25
+        and shade.clearance > 0.3
+        and -0.05 < gap < MAX_POLE_GAP
+        and np.linalg.norm(foot.centre[:2] - shade.centre[:2]) <= 0.12
+        and max(foot.extent[:2].max(), shade.extent[:2].max()) <= 0.65
+        and foot.table[0] < 0.12
+    )
+
+
+def _between(parts: PartSet, i: int, j: int) -> bool:
+    """Whether some third part's top lies between the two, under the upper one: then that one carries it."""
+    foot, shade = parts.parts[i], parts.parts[j]
+    for k, other in parts.parts.items():
+        if k in (i, j) or not foot.upper[2] - 0.12 < other.upper[2] < shade.lower[2] + 0.12:
+            continue
+        if other.footprint.area > 0.1 and other.footprint.share_inside(foot.points, 0.04) > 0.5:
+            return True
+    return False
+
+
+def _join_lost_joints(parts: PartSet) -> bool:
+    """Parts of similar colour that nearly touch; whether anything was joined."""
+    changed = False
+    order = sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k))
+    for n, i in enumerate(order):
+        for j in order[n + 1 :]:
+            if i in parts.parts and j in parts.parts and _nearly_touching(parts.parts[i], parts.parts[j]):
+                parts.join(i, j)  # keeps i, the larger
+                changed = True
+                break
+    return changed
+
+
+def _nearly_touching(a: Part, b: Part) -> bool:
+    gap = np.maximum(0, np.maximum(a.lower - b.upper, b.lower - a.upper))
+    if np.linalg.norm(gap) > JOINT_GAP or colour_step(a.colour, b.colour) > SIMILAR_COLOUR:
+        return False
+    if min(a.footprint.size.max(), b.footprint.size.max()) > LARGE:
+        return False
+    lower, upper = (a, b) if a.centre[2] < b.centre[2] else (b, a)
+    area, height = lower.table
+    carried = area > SUPPORT_AREA and upper.lower[2] > height - 0.05 and lower.upper[2] - upper.lower[2] < 0.1
+    if carried and upper.footprint.area < 0.5 * lower.footprint.area:
+        return False
+    near = cKDTree(a.points).query(b.points, distance_upper_bound=JOINT_GAP)[0]
+    return bool(np.isfinite(near).sum() >= 3)
+
+
+def _join_panels(parts: PartSet) -> None:
+    """Thin upright panels off the floor, as long as the side of the thing they stand at: headboards, chair backs."""
+    for j in sorted(parts.parts, key=lambda k: (len(parts.parts[k]), k)):
+        panel = parts.parts[j]
+        sides = panel.footprint.size
+        if panel.clearance < 0.18 or sides.min() > 0.17 or sides.max() < 0.25:
+            continue
+        for i in sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k)):
+            if i != j and _attached(panel, parts.parts[i]):
+                parts.join(i, j)
+                break
+
+
+def _attached(panel: Part, body: Part) -> bool:
+    if not body.lower[2] - 0.05 < panel.lower[2] < body.upper[2] + 0.12 or panel.upper[2] < body.upper[2]:
+        return False
+    plan = body.footprint
+    away = np.abs(plan.local(panel.footprint.centre[None])[0])  # (2,)
+    length = panel.footprint.size.max()
+    for axis in (0, 1):
+        side = plan.size[1 - axis]
+        at_side = abs(away[axis] - plan.size[axis] / 2) < 0.13 and away[1 - axis] < 0.2 * side
+        if at_side and 0.72 < length / side < 1.25:
+            return True
+    return False
+
+
+def _join_legs(parts: PartSet) -> None:
+    """Thin low pieces under or inside the plan of a larger thing."""
+    for j in sorted(parts.parts, key=lambda k: (len(parts.parts[k]), k)):
+        leg = parts.parts[j]
+        if len(leg) > MAX_LEG_POINTS or leg.extent[:2].max() > 0.25 or leg.extent[2] > 1.0 or leg.clearance >= 0.45:
+            continue
+        owners = [
+            (float(colour_step(leg.colour, body.colour)) + 20 * max(0.0, float(body.lower[2] - leg.upper[2])), i)
+            for i, body in parts.parts.items()
+            if i != j and _over(body, leg)
+        ]
+        if owners:
+            parts.join(min(owners)[1], j)
+
+
+def _over(body: Part, leg: Part) -> bool:
+    high_enough = body.upper[2] > leg.upper[2] - 0.03 and body.clearance <= 1.3
+    return bool(len(body) >= 2 * len(leg) and high_enough and body.footprint.share_inside(leg.points, 0.06) > 0.6)

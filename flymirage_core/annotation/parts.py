@@ -1,0 +1,136 @@
+"""`PartSet`: the coloured surface cut in parts, while they are split and joined into objects."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flymirage_core.annotation.box_fitting import Footprint, fit_footprint
+
+Float32 = NDArray[np.float32]
+Index = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Fused points that are no structure, as a graph. World frame, metres; z here is height above world zero."""
+
+    points: Float32  # (N, 3)
+    colours: Float32  # (N, 3) shading-free Lab
+    normals: Float32  # (N, 3), zero where unknown
+    edges: Index  # (E, 2) neighbouring points (26-neighbourhood of voxels)
+    steps: Float32  # (E,) colour step along each edge
+    voxel: float
+    floor: float
+    yaw: float  # the room's
+
+
+class Part:
+    """Some points of a surface that belong together. Its measures are worked out when asked for."""
+
+    def __init__(self, surface: Surface, members: Index, standing: bool = False) -> None:
+        self.surface = surface
+        self.members = members  # (M,) ascending
+        self.standing = standing  # was cut off the surface it stands on, and must not be joined to it again
+
+    def __len__(self) -> int:
+        return len(self.members)
+
+    @cached_property
+    def points(self) -> Float32:
+        return self.surface.points[self.members]  # (M, 3)
+
+    @cached_property
+    def colour(self) -> Float32:
+        return np.asarray(np.median(self.surface.colours[self.members], axis=0))  # (3,) shading-free Lab
+
+    @cached_property
+    def bounds(self) -> Float32:
+        return np.asarray(np.percentile(self.points, (1, 99), axis=0))  # (2, 3)
+
+    @property
+    def lower(self) -> Float32:
+        return self.bounds[0]
+
+    @property
+    def upper(self) -> Float32:
+        return self.bounds[1]
+
+    @property
+    def centre(self) -> Float32:
+        return self.bounds.mean(axis=0)
+
+    @property
+    def extent(self) -> Float32:
+        return self.bounds[1] - self.bounds[0]
+
+    @property
+    def clearance(self) -> float:
+        """Metres between the floor and its lowest point."""
+        return float(self.lower[2]) - self.surface.floor
+
+    @cached_property
+    def footprint(self) -> Footprint:
+        return fit_footprint(self.points, self.surface.yaw)
+
+    @cached_property
+    def table(self) -> tuple[float, float]:
+        """Its broadest level face that looks up: (square metres, upper edge of its height)."""
+        up = self.members[self.surface.normals[self.members, 2] > LEVEL]
+        if len(up) < 6:
+            return 0.0, float("-inf")
+        heights = self.surface.points[up, 2]
+        counts, edges = np.histogram(heights, np.arange(heights.min() - 0.02, heights.max() + 0.06, 0.04))
+        pairs = counts + np.append(counts[1:], 0)
+        k = int(pairs.argmax())
+        return float(pairs[k]) * self.surface.voxel**2, float(edges[k]) + 0.04
+
+
+LEVEL = 0.85
+"""n_z from which a point lies on a level face that looks up."""
+
+
+class PartSet:
+    """All parts of a surface; joining keeps the larger part's number."""
+
+    def __init__(self, surface: Surface, labels: Index, min_points: int) -> None:
+        self.surface = surface
+        self.labels = labels.copy()  # (N,) part of each point; numbers without a part are too small to be one
+        order = np.argsort(labels, kind="stable")
+        starts = np.searchsorted(labels[order], np.arange(labels.max() + 2)) if len(labels) else np.zeros(1, int)
+        groups = [order[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        self.parts = {k: Part(surface, members) for k, members in enumerate(groups) if len(members) >= min_points}
+        self._next = len(groups)
+
+    def join(self, i: int, j: int) -> int:
+        """Make parts ``i`` and ``j`` one; its number."""
+        if len(self.parts[i]) < len(self.parts[j]):
+            i, j = j, i
+        a, b = self.parts[i], self.parts.pop(j)
+        self.labels[b.members] = i
+        standing = a.standing and len(a) > 0.5 * len(b)
+        self.parts[i] = Part(self.surface, np.sort(np.concatenate([a.members, b.members])), standing)
+        return i
+
+    def cut(self, i: int, members: Index) -> int:
+        """Make some members of part ``i`` a part of their own that stands on it; its number."""
+        number, self._next = self._next, self._next + 1
+        self.labels[members] = number
+        rest = np.setdiff1d(self.parts[i].members, members)
+        self.parts[i] = Part(self.surface, rest, self.parts[i].standing)
+        self.parts[number] = Part(self.surface, np.sort(members), standing=True)
+        return number
+
+    def contacts(self) -> list[tuple[int, int, int]]:
+        """(i, j, number of edges between them) for all parts that touch, the longest contact first."""
+        a, b = self.labels[self.surface.edges[:, 0]], self.labels[self.surface.edges[:, 1]]
+        different = a != b
+        low, high = np.minimum(a, b)[different].astype(np.int64), np.maximum(a, b)[different].astype(np.int64)
+        pairs, counts = np.unique(low * self._next + high, return_counts=True)
+        order = np.argsort(-counts, kind="stable")
+        found = [
+            (int(p // self._next), int(p % self._next), int(c))
+            for p, c in zip(pairs[order], counts[order], strict=True)
+        ]
+        return [(i, j, c) for i, j, c in found if i in self.parts and j in self.parts]

@@ -1,0 +1,263 @@
+"""What is the building and not an object: floor, ceiling, walls, and the direction they run in.
+
+Estimated from a coarse cloud of fused points without a range limit; a room has few planes and they are large, so it does not
+matter that far points are noisy.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+Float32 = NDArray[np.float32]
+Float64 = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+HORIZONTAL: Final = 0.92
+"""|n_z| from which a surface counts as level."""
+VERTICAL: Final = 0.25
+"""|n_z| up to which a surface counts as upright."""
+ALONG_WALL: Final = 0.93
+"""Cosine from which an upright surface faces a given direction."""
+HEIGHT_STEP: Final = 0.02
+"""Metres; bins of the height histograms."""
+FLOOR_PEAK: Final = 0.35
+"""The floor is the lowest height whose level area is this share of the largest."""
+CEILING_PEAK: Final = 0.5
+MIN_ROOM_HEIGHT: Final = 1.9
+DEFAULT_ROOM_HEIGHT: Final = 2.6
+"""Where no ceiling is seen: how high up something must reach to be a wall."""
+MIN_WALL_AREA: Final = 1.2
+"""Square metres that a wall shows at least."""
+MIN_WALL_TOP: Final = 0.9
+"""Metres of length along which it reaches the ceiling."""
+CEILING_REACH: Final = 0.45
+"""Metres below the ceiling that count as reaching it."""
+MAX_BEHIND: Final = 0.004
+"""Share of all points that may lie behind the outermost wall."""
+WALL_THICKNESS: Final = 0.12
+"""Metres behind a wall's plane that still are the wall."""
+WALL_CLEARANCE: Final = 0.06
+"""Metres before it."""
+FLOOR_CLEARANCE: Final = 0.045
+CEILING_CLEARANCE: Final = 0.07
+MAP_CELL: Final = 0.15
+"""Metres; cells of the floor's and ceiling's height maps, which follow rugs, steps and coffers."""
+FLOOR_RELIEF: Final = 0.14
+"""Metres by which the floor may rise (rugs, a step) or fall."""
+CEILING_RELIEF: Final = 0.7
+MAX_YAW_SAMPLES: Final = 20_000
+WALL_BIN: Final = 0.03
+
+
+@dataclass(frozen=True, eq=False)
+class Wall:
+    """An upright plane ``normal . xy = offset``; the room is on the side that the normal points to."""
+
+    normal: Float64  # (2,) unit
+    offset: float
+    start: float  # extent along `direction`
+    end: float
+
+    @property
+    def direction(self) -> Float64:
+        return np.array([-self.normal[1], self.normal[0]])  # (2,)
+
+    def distance(self, points: Float32 | Float64) -> Float64:
+        """Metres (N,) from the plane into the room, of points (N, 2 or 3)."""
+        return np.asarray(points[:, :2] @ self.normal - self.offset, np.float64)
+
+    def contains(self, points: Float32 | Float64) -> Bool:
+        """(N,) whether points (N, 3) belong to the wall's slab."""
+        along = points[:, :2] @ self.direction
+        distance = self.distance(points)
+        near = (distance < WALL_CLEARANCE) & (distance > -WALL_THICKNESS)
+        return np.asarray(near & (along > self.start - 0.1) & (along < self.end + 0.1))
+
+
+@dataclass(frozen=True, eq=False)
+class HeightMap:
+    """Heights on a grid of cells of `MAP_CELL`; constant beyond its edges."""
+
+    origin: Float64  # (2,)
+    heights: Float64  # (X, Y) metres
+
+    def at(self, points: Float32 | Float64) -> Float64:
+        """(N,) heights at points (N, 2 or 3)."""
+        cells = np.clip(((points[:, :2] - self.origin) / MAP_CELL).astype(int), 0, np.array(self.heights.shape) - 1)
+        return np.asarray(self.heights[cells[:, 0], cells[:, 1]])
+
+
+@dataclass(frozen=True, eq=False)
+class RoomStructure:
+    """The building round the objects. World frame, metres; ``yaw`` in [0, pi/2) is the direction of its walls."""
+
+    floor: float
+    ceiling: float | None
+    yaw: float
+    walls: tuple[Wall, ...]
+    floor_map: HeightMap
+    ceiling_map: HeightMap | None
+
+    def contains(self, points: Float32) -> Bool:
+        """(N,) whether points (N, 3) belong to the floor, the ceiling or a wall.
+
+        Only slabs belong to it, never all that is behind a wall: a flat has more than one room.
+        """
+        inside = points[:, 2] <= self.floor_map.at(points) + FLOOR_CLEARANCE
+        if self.ceiling_map is not None:
+            inside |= points[:, 2] >= self.ceiling_map.at(points) - CEILING_CLEARANCE
+        for wall in self.walls:
+            inside |= wall.contains(points)
+        return np.asarray(inside)
+
+
+def find_structure(points: Float32, normals: Float32, voxel: float) -> RoomStructure:
+    """Floor, ceiling, walls and yaw of the scene that ``points`` (N, 3) with ``normals`` (N, 3) show.
+
+    ``voxel``: metres, the spacing of the points. A scene without points has its floor at 0 and nothing else.
+    """
+    if len(points) == 0:
+        return RoomStructure(0.0, None, 0.0, (), HeightMap(np.zeros(2), np.zeros((1, 1))), None)
+    floor = _floor(points, normals)
+    ceiling = _ceiling(points, normals, floor)
+    upright = np.abs(normals[:, 2]) < VERTICAL
+    upright &= (normals != 0).any(axis=1)
+    yaw = room_yaw(points[upright], normals[upright])
+    top = ceiling if ceiling is not None else floor + DEFAULT_ROOM_HEIGHT
+    walls = [w for k in range(4) for w in _walls_facing(points, normals, upright, yaw + k * np.pi / 2, top, voxel)]
+    yaw, walls = _aligned(points, normals, upright, yaw, walls)
+    level = (normals[:, 2] > HORIZONTAL) & (np.abs(points[:, 2] - floor) < FLOOR_RELIEF)
+    floor_map = _height_map(points, level, floor)
+    ceiling_map = None
+    if ceiling is not None:
+        ceiling_map = _height_map(
+            points, (normals[:, 2] < -HORIZONTAL) & (points[:, 2] > ceiling - CEILING_RELIEF), ceiling
+        )
+    return RoomStructure(floor, ceiling, float(yaw % (np.pi / 2)), tuple(walls), floor_map, ceiling_map)
+
+
+def room_yaw(points: Float32, normals: Float32) -> float:
+    """Direction, modulo 90 degrees, whose upright points pile up in the sharpest planes; radians.
+
+    A histogram of normals is not enough: round things and noise smear it by many degrees.
+    """
+    step = max(1, len(points) // MAX_YAW_SAMPLES)
+    xy, facing = points[::step, :2].astype(np.float64), normals[::step, :2].astype(np.float64)
+    coarse = np.radians(np.arange(0, 90, 1.0))
+    best = coarse[int(np.argmax([_sharpness(xy, facing, yaw) for yaw in coarse]))]
+    fine = best + np.radians(np.arange(-1, 1.01, 0.2))
+    return float(fine[int(np.argmax([_sharpness(xy, facing, yaw) for yaw in fine]))])
+
+
+def _sharpness(xy: Float64, facing: Float64, yaw: float) -> float:
+    """Sum of squared histogram counts of the points' offsets along the two axes at ``yaw``."""
+    total = 0.0
+    for angle in (yaw, yaw + np.pi / 2):
+        axis = np.array([np.cos(angle), np.sin(angle)])
+        offsets = xy[np.abs(facing @ axis) > ALONG_WALL] @ axis
+        if len(offsets):
+            counts = np.bincount(((offsets - offsets.min()) / 0.04).astype(int))
+            total += float((counts.astype(np.float64) ** 2).sum())
+    return total
+
+
+def _floor(points: Float32, normals: Float32) -> float:
+    level = points[normals[:, 2] > HORIZONTAL, 2]
+    if len(level) < 50:
+        return float(points[:, 2].min())
+    return _first_peak(level, FLOOR_PEAK)
+
+
+def _ceiling(points: Float32, normals: Float32, floor: float) -> float | None:
+    level = points[normals[:, 2] < -HORIZONTAL, 2]
+    if len(level) < 200:
+        return None
+    ceiling = -_first_peak(-level, CEILING_PEAK)
+    return ceiling if ceiling - floor > MIN_ROOM_HEIGHT else None
+
+
+def _first_peak(heights: Float32, share: float) -> float:
+    """The lowest local maximum of the heights' histogram that starts where it passes ``share`` of its maximum."""
+    counts, edges = np.histogram(
+        heights, np.arange(heights.min() - 0.05, heights.max() + 0.05 + HEIGHT_STEP, HEIGHT_STEP)
+    )
+    i = int(np.flatnonzero(counts > share * counts.max())[0])
+    while i + 1 < len(counts) and counts[i + 1] > counts[i]:
+        i += 1
+    return float((edges[i] + edges[i + 1]) / 2)
+
+
+def _walls_facing(
+    points: Float32, normals: Float32, upright: Bool, azimuth: float, top: float, voxel: float
+) -> list[Wall]:
+    """Walls whose normal has this azimuth: planes of enough area that reach the top, or that nothing is behind."""
+    normal = np.array([np.cos(azimuth), np.sin(azimuth)])
+    direction = np.array([-normal[1], normal[0]])
+    facing = upright & (normals[:, :2] @ normal > ALONG_WALL)
+    if facing.sum() < 100:
+        return []
+    offsets, along, heights = points[facing, :2] @ normal, points[facing, :2] @ direction, points[facing, 2]
+    all_offsets = points[:, :2] @ normal
+    counts, edges = np.histogram(offsets, np.arange(offsets.min() - 0.06, offsets.max() + 0.06 + WALL_BIN, WALL_BIN))
+    smoothed = np.convolve(counts, [1, 1, 1], "same")
+    peaks = (smoothed >= ndimage.maximum_filter1d(smoothed, 9)) & (smoothed * voxel**2 > 0.8)
+    walls = []
+    for j in np.flatnonzero(peaks):
+        offset = (edges[j] + edges[j + 1]) / 2
+        on = np.abs(offsets - offset) < 0.05
+        offset = float(np.median(offsets[on]))
+        cells = np.unique(np.floor(np.stack([along[on], heights[on]], axis=1) / MAP_CELL), axis=0)  # (C, 2)
+        reaching = np.unique(cells[cells[:, 1] * MAP_CELL > top - CEILING_REACH, 0])
+        outermost = (all_offsets < offset - WALL_THICKNESS).mean() < MAX_BEHIND and np.ptp(heights[on]) > 1.2
+        if len(cells) * MAP_CELL**2 > MIN_WALL_AREA and (len(reaching) * MAP_CELL > MIN_WALL_TOP or outermost):
+            walls.append(Wall(normal, offset, float(along[on].min()), float(along[on].max())))
+    return walls
+
+
+def _aligned(
+    points: Float32, normals: Float32, upright: Bool, yaw: float, walls: list[Wall]
+) -> tuple[float, list[Wall]]:
+    """The yaw refined by straight lines through the walls' own points, and the walls turned accordingly."""
+    turns, weights = [], []
+    for wall in walls:
+        on = points[upright & (np.abs(wall.distance(points)) < 0.06) & (normals[:, :2] @ wall.normal > 0.9), :2]
+        if len(on) < 50:
+            continue
+        centred = (on - on.mean(axis=0)).astype(np.float64)
+        values, vectors = np.linalg.eigh(centred.T @ centred)
+        run = np.arctan2(vectors[1, 1], vectors[0, 1]) - yaw
+        turns.append((run + np.pi / 4) % (np.pi / 2) - np.pi / 4)
+        weights.append(values[1])
+    turn = float(np.average(turns, weights=weights)) if turns else 0.0
+    if abs(turn) > 0.06 or turn == 0.0:
+        return yaw, walls
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    turned = []
+    for wall in walls:
+        normal = rotation @ wall.normal
+        on = upright & (np.abs(points[:, :2] @ normal - wall.offset) < 0.08) & (normals[:, :2] @ normal > 0.9)
+        offset = float(np.median(points[on, :2] @ normal)) if on.any() else wall.offset
+        turned.append(Wall(normal, offset, wall.start, wall.end))
+    return yaw + turn, turned
+
+
+def _height_map(points: Float32, level: Bool, default: float) -> HeightMap:
+    """Median heights of the ``level`` points in each cell, gaps filled from the nearest cell, smoothed."""
+    origin = points[:, :2].min(axis=0).astype(np.float64)
+    shape = ((points[:, :2].max(axis=0) - origin) / MAP_CELL).astype(int) + 1
+    cells = ((points[level, :2] - origin) / MAP_CELL).astype(int)
+    flat, heights = cells[:, 0] * shape[1] + cells[:, 1], points[level, 2]
+    order = np.lexsort((heights, flat))
+    flat, heights = flat[order], heights[order]
+    found, starts, counts = np.unique(flat, return_index=True, return_counts=True)
+    grid = np.full(int(shape.prod()), np.nan)
+    known = counts >= 2
+    grid[found[known]] = heights[(starts + counts // 2)[known]]
+    grid = grid.reshape(shape)
+    if np.isnan(grid).all():
+        return HeightMap(origin, np.full(shape, default))
+    nearest = ndimage.distance_transform_edt(np.isnan(grid), return_distances=False, return_indices=True)
+    return HeightMap(origin, ndimage.median_filter(grid[tuple(nearest)], 5))
