@@ -1,0 +1,162 @@
+"""What the embedded world model can build: for each noun its size range, its builder, and where things can stand on it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from flymirage_core.worldgen import shapes_decor as decor
+from flymirage_core.worldgen import shapes_furniture as furniture
+from flymirage_core.worldgen import shapes_utility as utility
+from flymirage_core.worldgen.parts import Finish
+from flymirage_core.worldgen.surfaces import Part, Vector
+
+Builder = Callable[[Vector, Finish], list[Part]]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A buildable kind of thing: sizes in metres (x, y, z) from ``smallest`` to ``largest``.
+
+    ``top`` is where small things can stand, as a share of its height (0 = nowhere). A ``square`` kind keeps its proportions;
+    a ``full_height`` one reaches from floor to ceiling.
+    """
+
+    build: Builder
+    smallest: Vector
+    largest: Vector
+    top: float = 0.0
+    square: bool = False
+    full_height: bool = False
+
+    def size(self, rng: np.random.Generator, room_height: float) -> Vector:
+        """A size within the range: large in all directions or small in all, with some freedom unless ``square``."""
+        large = rng.uniform(0.0, 1.0)
+        share = np.full(3, large) if self.square else np.clip(large + rng.normal(0.0, 0.2, 3), 0.0, 1.0)
+        x, y, z = (a + s * (b - a) for a, b, s in zip(self.smallest, self.largest, share, strict=True))
+        return x, y, room_height if self.full_height else z
+
+
+def _kind(
+    build: Builder, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], top: float = 0.0
+) -> Kind:
+    return Kind(build, (x[0], y[0], z[0]), (x[1], y[1], z[1]), top)
+
+
+def _round(build: Builder, width: tuple[float, float], z: tuple[float, float], top: float = 0.0) -> Kind:
+    return Kind(build, (width[0], width[0], z[0]), (width[1], width[1], z[1]), top, square=True)
+
+
+KINDS: dict[str, Kind] = {
+    # tables
+    "dining table": _kind(furniture.table, (1.6, 2.1), (0.85, 1.0), (0.74, 0.78), 1.0),
+    "conference table": _kind(furniture.table, (2.0, 2.5), (1.0, 1.2), (0.74, 0.76), 1.0),
+    "round table": _round(furniture.round_table, (0.9, 1.25), (0.72, 0.77), 1.0),
+    "coffee table": _kind(furniture.coffee_table, (0.9, 1.25), (0.55, 0.7), (0.36, 0.42), 1.0),
+    "side table": _round(furniture.round_table, (0.42, 0.55), (0.48, 0.62), 1.0),
+    "console table": _kind(furniture.table, (1.0, 1.5), (0.34, 0.42), (0.76, 0.88), 1.0),
+    "desk": _kind(furniture.desk, (1.3, 1.7), (0.65, 0.8), (0.73, 0.77), 1.0),
+    "workbench": _kind(furniture.workbench, (1.5, 2.2), (0.65, 0.8), (0.86, 0.95), 1.0),
+    "counter": _kind(furniture.counter, (1.5, 2.4), (0.6, 0.7), (0.92, 1.05), 1.0),
+    "reception desk": _kind(furniture.reception_desk, (1.8, 2.4), (0.75, 0.9), (1.08, 1.18), 1.0),
+    # seats and beds
+    "dining chair": _kind(furniture.chair, (0.44, 0.5), (0.46, 0.52), (0.86, 0.98)),
+    "padded chair": _kind(furniture.padded_chair, (0.5, 0.56), (0.52, 0.58), (0.82, 0.92)),
+    "armchair": _kind(furniture.sofa, (0.82, 0.98), (0.8, 0.92), (0.8, 0.95)),
+    "office chair": _kind(furniture.office_chair, (0.62, 0.68), (0.62, 0.68), (0.98, 1.12)),
+    "stool": _round(furniture.stool, (0.36, 0.42), (0.46, 0.7)),
+    "bench": _kind(furniture.bench, (1.2, 1.7), (0.38, 0.46), (0.44, 0.48)),
+    "seat row": _kind(furniture.seat_row, (1.7, 2.3), (0.58, 0.66), (0.82, 0.9)),
+    "sofa": _kind(furniture.sofa, (1.8, 2.35), (0.85, 0.98), (0.78, 0.9)),
+    "pouf": _round(furniture.pouf, (0.48, 0.62), (0.36, 0.44)),
+    "bed": _kind(furniture.bed, (1.4, 1.8), (2.0, 2.15), (0.95, 1.15)),
+    # storage
+    "bookshelf": _kind(furniture.bookshelf, (0.8, 1.2), (0.3, 0.36), (1.6, 2.1)),
+    "low bookshelf": _kind(furniture.bookshelf, (0.9, 1.4), (0.3, 0.36), (0.85, 1.0), 1.0),
+    "storage rack": _kind(furniture.storage_rack, (1.2, 1.8), (0.5, 0.6), (1.7, 2.2)),
+    "cabinet": _kind(furniture.cabinet, (0.8, 1.2), (0.42, 0.5), (0.85, 1.1), 1.0),
+    "sideboard": _kind(furniture.cabinet, (1.4, 1.9), (0.42, 0.5), (0.78, 0.9), 1.0),
+    "wardrobe": _kind(furniture.cabinet, (1.0, 1.5), (0.55, 0.62), (1.9, 2.15)),
+    "locker": _kind(furniture.cabinet, (0.9, 1.4), (0.45, 0.52), (1.75, 1.9)),
+    "filing cabinet": _kind(furniture.drawers, (0.45, 0.5), (0.55, 0.62), (1.05, 1.35), 1.0),
+    "chest of drawers": _kind(furniture.drawers, (0.85, 1.2), (0.45, 0.5), (0.8, 1.0), 1.0),
+    "nightstand": _kind(furniture.drawers, (0.45, 0.55), (0.4, 0.45), (0.52, 0.6), 1.0),
+    "display case": _kind(furniture.display_case, (0.9, 1.3), (0.45, 0.55), (1.5, 1.8)),
+    "fridge": _kind(furniture.fridge, (0.66, 0.78), (0.66, 0.72), (1.75, 1.9)),
+    "vending machine": _kind(furniture.vending_machine, (0.85, 1.0), (0.75, 0.85), (1.8, 1.92)),
+    "tv stand": _kind(furniture.tv_stand, (1.3, 1.8), (0.4, 0.45), (0.48, 0.58), 1.0),
+    # on the floor
+    "floor lamp": _round(decor.floor_lamp, (0.36, 0.46), (1.5, 1.75)),
+    "potted plant": _round(decor.potted_plant, (0.6, 0.85), (0.9, 1.6)),
+    "floor vase": _round(decor.vase, (0.3, 0.42), (0.55, 0.85)),
+    "sculpture": _round(decor.sculpture, (0.38, 0.5), (1.1, 1.5)),
+    "coat rack": _round(decor.coat_rack, (0.44, 0.52), (1.65, 1.8)),
+    "basket": _round(utility.basket, (0.38, 0.5), (0.32, 0.45)),
+    "waste bin": _round(utility.bin_, (0.3, 0.4), (0.5, 0.75)),
+    "cardboard box": _kind(utility.carton, (0.4, 0.6), (0.35, 0.5), (0.32, 0.48)),
+    "crate": _kind(utility.crate, (0.6, 0.9), (0.55, 0.75), (0.5, 0.75), 1.0),
+    "barrel": _round(utility.barrel, (0.55, 0.62), (0.82, 0.92)),
+    "gas cylinder": _round(utility.gas_cylinder, (0.26, 0.32), (1.2, 1.45)),
+    "storage tank": _round(utility.tank, (0.9, 1.2), (1.5, 2.0)),
+    "machine": _kind(utility.machine, (1.2, 1.7), (0.75, 1.0), (1.25, 1.6)),
+    "generator": _kind(utility.generator, (1.1, 1.5), (0.65, 0.8), (0.95, 1.2)),
+    "pump": _kind(utility.pump, (0.9, 1.2), (0.5, 0.62), (0.7, 0.95)),
+    "pipe rack": _kind(utility.pipe_rack, (1.6, 2.2), (0.24, 0.3), (1.5, 1.9)),
+    "tool chest": _kind(utility.tool_chest, (0.65, 0.85), (0.45, 0.5), (0.85, 1.05), 1.0),
+    "suitcase": _kind(utility.suitcase, (0.42, 0.5), (0.24, 0.3), (0.8, 1.0)),
+    "traffic cone": _round(utility.traffic_cone, (0.34, 0.4), (0.6, 0.75)),
+    "information sign": _kind(utility.standing_sign, (0.7, 0.95), (0.36, 0.42), (1.5, 1.75)),
+    "ticket machine": _kind(utility.kiosk, (0.62, 0.75), (0.48, 0.56), (1.5, 1.75)),
+    "turnstile": _kind(utility.turnstile, (0.8, 0.95), (0.9, 1.1), (0.95, 1.05)),
+    "trolley": _kind(utility.trolley, (0.75, 0.95), (0.48, 0.56), (0.85, 0.98)),
+    "pallet of sacks": _kind(utility.pallet, (1.0, 1.2), (0.8, 1.0), (0.5, 0.85)),
+    "column": replace(_round(utility.column, (0.42, 0.5), (1.0, 1.0)), full_height=True),
+    # on surfaces
+    "table lamp": _round(decor.table_lamp, (0.26, 0.34), (0.42, 0.55)),
+    "vase": _round(decor.vase, (0.17, 0.24), (0.28, 0.42)),
+    "fruit bowl": _round(decor.bowl, (0.28, 0.36), (0.13, 0.17)),
+    "stack of books": _kind(decor.book_stack, (0.24, 0.3), (0.2, 0.24), (0.15, 0.24)),
+    "mantel clock": _kind(decor.mantel_clock, (0.2, 0.28), (0.1, 0.13), (0.22, 0.3)),
+    "monitor": _kind(decor.monitor, (0.55, 0.66), (0.18, 0.22), (0.44, 0.52)),
+    "laptop": _kind(decor.laptop, (0.34, 0.38), (0.25, 0.28), (0.24, 0.27)),
+    "globe": _round(decor.globe, (0.26, 0.32), (0.36, 0.44)),
+    "printer": _kind(decor.printer, (0.42, 0.5), (0.36, 0.4), (0.24, 0.3)),
+    "microwave": _kind(decor.microwave, (0.46, 0.52), (0.34, 0.38), (0.27, 0.31)),
+    "kettle": _round(decor.kettle, (0.24, 0.28), (0.24, 0.3)),
+    "candle holder": _round(decor.candle_holder, (0.14, 0.18), (0.24, 0.34)),
+    "small plant": _round(decor.small_plant, (0.26, 0.36), (0.32, 0.45)),
+    "storage box": _kind(utility.carton, (0.28, 0.38), (0.22, 0.3), (0.18, 0.26)),
+    "toolbox": _kind(utility.toolbox, (0.4, 0.5), (0.2, 0.25), (0.22, 0.28)),
+    "helmet": _kind(utility.helmet, (0.24, 0.27), (0.28, 0.32), (0.17, 0.2)),
+    "bottle": _round(utility.bottle, (0.14, 0.17), (0.32, 0.4)),
+    "cooking pot": _round(utility.pot, (0.3, 0.38), (0.2, 0.27)),
+    "ball": _round(utility.ball, (0.22, 0.3), (0.22, 0.3)),
+    # on walls
+    "painting": _kind(decor.painting, (0.6, 1.2), (0.05, 0.06), (0.5, 0.85)),
+    "poster": _kind(decor.poster, (0.5, 0.75), (0.025, 0.03), (0.7, 1.0)),
+    "notice board": _kind(decor.notice_board, (0.9, 1.4), (0.05, 0.06), (0.65, 0.9)),
+    "mirror": _kind(decor.mirror, (0.5, 0.8), (0.05, 0.06), (0.7, 1.1)),
+    "television": _kind(decor.television, (1.0, 1.35), (0.06, 0.08), (0.6, 0.78)),
+    "wall clock": replace(_kind(decor.wall_clock, (0.34, 0.45), (0.06, 0.07), (0.34, 0.45)), square=True),
+    "wall shelf": _kind(decor.wall_shelf, (0.8, 1.1), (0.22, 0.26), (0.38, 0.46)),
+    "wall lamp": _kind(decor.sconce, (0.2, 0.26), (0.2, 0.26), (0.34, 0.42)),
+    "electrical box": _kind(utility.electrical_box, (0.4, 0.6), (0.16, 0.22), (0.55, 0.8)),
+    "fire extinguisher": _kind(utility.fire_extinguisher, (0.22, 0.24), (0.2, 0.22), (0.52, 0.6)),
+    # from the ceiling; z is from the ceiling down
+    "pendant lamp": _round(decor.pendant_lamp, (0.4, 0.55), (0.55, 0.8)),
+    "ceiling light": _kind(decor.ceiling_panel, (0.9, 1.2), (0.3, 0.6), (0.06, 0.08)),
+    "hanging plant": _round(decor.hanging_plant, (0.5, 0.65), (0.75, 0.95)),
+}  # fmt: skip
+
+UNKNOWN = _kind(utility.plain_box, (0.4, 0.7), (0.35, 0.5), (0.4, 0.7))
+
+
+def kind_of(noun: str) -> Kind:
+    """The kind for a noun, else for the longest ending of it that is known ("old oak desk"), else a plain body."""
+    words = noun.lower().split()
+    for start in range(len(words)):
+        found = KINDS.get(" ".join(words[start:]))
+        if found:
+            return found
+    ending = next((k for k in KINDS if words and k.split()[-1] == words[-1]), None)
+    return KINDS[ending] if ending else UNKNOWN

@@ -1,0 +1,368 @@
+"""Lamps, plants, vessels, electronics, and what hangs on walls and ceilings. Every builder fills its size; +y is the front."""
+
+import numpy as np
+
+from flymirage_core.worldgen.materials import Material
+from flymirage_core.worldgen.parts import (
+    Finish,
+    box,
+    cylinder,
+    ellipsoid,
+    foliage,
+    paint,
+    picture,
+    smooth,
+    tube,
+    turned,
+)
+from flymirage_core.worldgen.surfaces import Part, Vector
+
+GLOW = 1.6
+"""Emission of a lampshade."""
+LEAF_GREENS = ("forest green", "green", "moss green", "olive")
+
+
+def _shade(f: Finish) -> Material:
+    r, g, b = f.main.colour
+    warm = (0.5 + 0.5 * r, 0.44 + 0.5 * g, 0.34 + 0.5 * b)
+    return Material(tuple(min(c, 0.95) for c in warm), "fabric", emission=GLOW, seed=f.seed)  # type: ignore[arg-type]
+
+
+def floor_lamp(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    base = turned(f.second, [(0, 0), (r * 0.75, 0), (r * 0.72, 0.025), (0.02, 0.035), (0.016, z - 0.32), (0, z - 0.32)])
+    return [base, turned(_shade(f), [(0, z - 0.3), (r, z - 0.3), (r * 0.72, z), (0, z)])]
+
+
+def table_lamp(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    foot = turned(
+        f.main, smooth([(0, 0), (r * 0.55, 0), (r * 0.6, z * 0.15), (r * 0.2, z * 0.4), (r * 0.12, z * 0.55)])
+    )
+    return [foot, turned(_shade(f), [(0, z * 0.52), (r, z * 0.52), (r * 0.65, z), (0, z)])]
+
+
+def pendant_lamp(size: Vector, f: Finish) -> list[Part]:
+    """Fills its whole height with cord and shade: it hangs from the ceiling."""
+    x, _, z = size
+    r, shade = x / 2, min(0.3, z * 0.5)
+    dome = turned(f.main, smooth([(r, 0.0), (r * 0.9, shade * 0.45), (r * 0.35, shade * 0.85), (0.0, shade)], 10))
+    bulb = turned(paint("cream", emission=3.5), [(0, 0.01), (r * 0.95, 0.012)])
+    return [
+        dome,
+        bulb,
+        cylinder(f.second, 0.008, z - shade, (0, 0, shade)),
+        cylinder(f.second, 0.05, 0.03, (0, 0, z - 0.03)),
+    ]
+
+
+def ceiling_panel(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    glow = turned(paint("white", emission=3.0), [(0, 0), (0.5, 0)], (0, 0, 0), (x * 0.9, y * 0.9))
+    return [box(f.second, (x, y, z - 0.005), (0, 0, 0.005)), glow]
+
+
+def potted_plant(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    rng = f.generator()
+    pot_height, r = min(0.38, z * 0.32), min(x, y) * 0.3
+    pot = turned(
+        f.main,
+        [
+            (0, 0),
+            (r * 0.75, 0),
+            (r, pot_height),
+            (r * 0.88, pot_height),
+            (r * 0.86, pot_height - 0.04),
+            (0, pot_height - 0.04),
+        ],
+    )
+    leaf_paint = paint(str(rng.choice(LEAF_GREENS)), "leaf", seed=f.seed)
+    crown = z - pot_height + 0.05
+    stems = [
+        p
+        for _ in range(3)
+        for p in tube(
+            paint("chestnut"),
+            [
+                (rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), pot_height - 0.05),
+                (*rng.uniform(-0.1, 0.1, 2) * x, z * 0.7),
+            ],
+            0.012,
+        )
+    ]
+    length = float(np.clip(0.28 * crown, 0.1, 0.32))
+    count = int(np.clip(70 * crown / length * 0.5, 60, 220))
+    leaves = foliage(
+        leaf_paint,
+        (x / 2, y / 2, crown / 2),
+        (0, 0, z - crown / 2),
+        (length, length * rng.uniform(0.28, 0.5)),
+        count,
+        rng,
+    )
+    return [pot, *stems, leaves]
+
+
+def small_plant(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    rng = f.generator()
+    r, pot_height = x * 0.3, z * 0.42
+    pot = turned(f.main, [(0, 0), (r * 0.8, 0), (r, pot_height), (r * 0.85, pot_height), (0, pot_height - 0.02)])
+    leaf_paint = paint(str(rng.choice(LEAF_GREENS)), "leaf", seed=f.seed)
+    return [pot, foliage(leaf_paint, (x / 2, y / 2, z * 0.34), (0, 0, z * 0.66), (z * 0.32, z * 0.1), 60, rng)]
+
+
+def vase(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    rng = f.generator()
+    forms = (
+        [(0, 0), (r * 0.6, 0), (r, z * 0.35), (r * 0.55, z * 0.75), (r * 0.4, z * 0.9), (r * 0.55, z)],
+        [(0, 0), (r * 0.5, 0), (r * 0.75, z * 0.3), (r, z * 0.68), (r * 0.6, z * 0.93), (r * 0.65, z)],
+        [(0, 0), (r * 0.9, 0), (r, z * 0.25), (r * 0.45, z * 0.5), (r * 0.35, z * 0.85), (r * 0.5, z)],
+    )
+    form = smooth(forms[int(rng.integers(len(forms)))])
+    return [turned(f.main, form), turned(f.main.shaded(0.3), [(form[-1][0], z - 0.005), (0, z - 0.02)])]
+
+
+def bowl(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    outside = turned(f.main, smooth([(0, 0), (r * 0.4, 0), (r * 0.8, z * 0.45), (r, z)], 8))
+    inside = turned(f.main.shaded(0.7), smooth([(r, z), (r * 0.76, z * 0.5), (r * 0.35, z * 0.22), (0, z * 0.2)], 8))
+    fruit = [
+        ellipsoid(paint(c), (r * 0.3,) * 3, (u * r, v * r, z * 0.75))
+        for c, u, v in (("orange", 0.3, 0.1), ("red", -0.3, 0.2), ("olive", 0.0, -0.35))
+    ]
+    return [outside, inside, *fruit]
+
+
+def book_stack(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    rng = f.generator()
+    count = max(3, round(z / 0.045))
+    parts = []
+    for i in range(count):
+        cover = f.main if i % 2 == 0 else f.second
+        w, d = x - rng.uniform(0, 0.03) * (i > 0), y - rng.uniform(0, 0.03) * (i > 0)
+        parts.append(box(cover.shaded(rng.uniform(0.75, 1.25)), (w, d, z / count - 0.003), (0, 0, i * z / count)))
+    return parts
+
+
+def mantel_clock(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    return [box(f.main, (x, y - 0.012, z), (0, -0.006, 0), 0.02), *_dial(min(x, z) * 0.4, (0, y / 2 - 0.008, z * 0.52))]
+
+
+def wall_clock(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    r = min(x, z) / 2
+    rim = _facing(turned(f.main, [(0, 0), (r, 0), (r, y), (r * 0.88, y), (r * 0.86, y * 0.6)]), (0, -y / 2, z / 2))
+    return [rim, *_dial(r * 0.88, (0, y * 0.1, z / 2))]
+
+
+def _dial(radius: float, centre: Vector) -> list[Part]:
+    x, y, z = centre
+    face = _facing(turned(paint("chalk"), [(radius, 0), (0, 0.002)]), centre)
+    hands = [
+        box(paint("black"), (0.012, 0.003, radius * 0.75), (x, y + 0.004, z)),
+        box(paint("black"), (radius * 0.5, 0.003, 0.012), (x + radius * 0.25, y + 0.004, z)),
+    ]
+    return [face, *hands]
+
+
+def _facing(part: Part, offset: Vector) -> Part:
+    """A lathed part laid so that its axis points to the front, +y."""
+    return Part(part.surface, part.material, offset, np.array([[1.0, 0, 0], [0, 0, 1.0], [0, -1.0, 0]]))
+
+
+def monitor(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    screen = Material((0.5, 0.5, 0.5), "screen", emission=1.5, detail=0.6, seed=f.seed)
+    panel = box(f.second, (x, 0.04, z * 0.78), (0, 0, z * 0.22), 0.008)
+    stand = [box(f.second, (x * 0.4, y, 0.02)), box(f.second, (0.06, 0.04, z * 0.3), (0, -0.03, 0.02))]
+    return [panel, picture(screen, x - 0.03, z * 0.78 - 0.03, (0, 0.024, z * 0.22 + 0.015)), *stand]
+
+
+def laptop(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    screen = Material((0.5, 0.5, 0.5), "screen", emission=1.5, detail=0.5, seed=f.seed)
+    return [
+        box(f.main, (x, y, 0.02)),
+        box(paint("charcoal"), (x - 0.05, y * 0.5, 0.004), (0, 0.0, 0.02)),
+        box(f.main, (x, 0.012, z - 0.02), (0, -y / 2 + 0.008, 0.02)),
+        picture(screen, x - 0.03, z - 0.05, (0, -y / 2 + 0.018, 0.035)),
+    ]
+
+
+def globe(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    stand = turned(f.second, [(0, 0), (r * 0.7, 0), (r * 0.6, 0.02), (0.02, 0.04), (0.02, z - 2 * r + 0.02)])
+    lands = [
+        ellipsoid(paint("moss green"), (r * 0.5, r * 0.3, r * 0.42), (u * r, v * r, z - r + w * r))
+        for u, v, w in ((0.42, 0.5, 0.3), (-0.45, 0.42, -0.2), (0.1, -0.6, 0.2))
+    ]
+    return [stand, ellipsoid(f.main, (r, r, r), (0, 0, z - r)), *lands]
+
+
+def printer(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    tray = box(paint("chalk"), (x * 0.6, y * 0.4, 0.015), (0, y * 0.28, z * 0.32))
+    return [
+        box(f.main, (x, y, z * 0.8), (0, 0, 0), 0.02),
+        box(f.second, (x * 0.9, y * 0.6, z * 0.2), (0, -y * 0.15, z * 0.8), 0.02),
+        tray,
+    ]
+
+
+def microwave(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    door = box(paint("black"), (x * 0.66, 0.015, z * 0.74), (-x * 0.13, y / 2 - 0.01, z * 0.13), 0.005)
+    return [
+        box(f.main, (x, y - 0.015, z), (0, -0.0075, 0), 0.012),
+        door,
+        box(f.second, (0.02, 0.02, z * 0.7), (x * 0.24, y / 2 - 0.01, z * 0.15)),
+    ]
+
+
+def kettle(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x * 0.4
+    body = turned(f.main, smooth([(0, 0), (r, 0), (r, z * 0.3), (r * 0.7, z * 0.7), (r * 0.3, z * 0.8), (0, z * 0.82)]))
+    handle = tube(
+        f.second,
+        [(-r * 0.6, 0, z * 0.7), (-r * 0.5, 0, z * 0.98), (r * 0.5, 0, z * 0.98), (r * 0.6, 0, z * 0.7)],
+        0.012,
+    )
+    return [body, *handle, *tube(f.main, [(r * 0.7, 0, z * 0.45), (x / 2 - 0.015, 0, z * 0.7)], 0.02)]
+
+
+def candle_holder(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    foot = turned(
+        f.main, smooth([(0, 0), (r, 0), (r * 0.3, z * 0.12), (r * 0.3, z * 0.5), (r * 0.7, z * 0.55), (0, z * 0.56)])
+    )
+    return [
+        foot,
+        cylinder(paint("ivory"), r * 0.42, z * 0.42, (0, 0, z * 0.55)),
+        ellipsoid(paint("yellow", emission=4.0), (0.012, 0.012, 0.02), (0, 0, z - 0.02)),
+    ]
+
+
+def sculpture(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    plinth = box(f.second, (x, y, z * 0.5), (0, 0, 0), 0.01)
+    balls = [
+        ellipsoid(f.main, (x * k, y * k, z * 0.5 * h), (0, 0, z * (0.5 + 0.5 * c)))
+        for k, h, c in ((0.44, 0.24, 0.24), (0.34, 0.2, 0.6), (0.2, 0.14, 0.86))
+    ]
+    return [plinth, *balls]
+
+
+def painting(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    canvas = Material((0.5, 0.5, 0.5), "painting", detail=0.6, seed=f.seed)
+    return [
+        *_frame(f.main, x, y, z),
+        box(paint("chalk"), (x - 0.05, 0.01, z - 0.05), (0, 0, 0.025)),
+        picture(canvas, x - 0.14, z - 0.14, (0, 0.008, 0.07)),
+    ]
+
+
+def poster(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    sheet = Material((0.5, 0.5, 0.5), "painting", detail=0.6, seed=f.seed)
+    return [
+        box(paint("white"), (x, y, z)),
+        picture(sheet, x - 0.04, z - 0.2, (0, y / 2 + 0.003, 0.17)),
+        box(f.main, (x - 0.1, 0.004, 0.09), (0, y / 2 + 0.002, 0.05)),
+    ]
+
+
+def notice_board(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    cork = Material((0.5, 0.5, 0.5), "notes", detail=0.6, seed=f.seed)
+    return [*_frame(f.main, x, y, z), picture(cork, x - 0.06, z - 0.06, (0, 0.0, 0.03))]
+
+
+def mirror(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    glass = Material((0.42, 0.47, 0.5), "metal", seed=f.seed)
+    return [*_frame(f.main, x, y, z), picture(glass, x - 0.06, z - 0.06, (0, 0.0, 0.03))]
+
+
+def television(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    screen = Material((0.5, 0.5, 0.5), "painting", emission=0.5, detail=0.7, seed=f.seed)
+    return [
+        box(paint("black"), (x, y - 0.005, z), (0, -0.0025, 0), 0.006),
+        picture(screen, x - 0.04, z - 0.05, (0, y / 2 - 0.002, 0.03)),
+    ]
+
+
+def _frame(material: Material, x: float, y: float, z: float) -> list[Part]:
+    bar = 0.04
+    sides = [box(material, (bar, y, z), (s * (x / 2 - bar / 2), 0, 0), 0.006) for s in (-1, 1)]
+    return [*sides, *(box(material, (x - 2 * bar, y, bar), (0, 0, b), 0.006) for b in (0.0, z - bar))]
+
+
+def wall_shelf(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    rng = f.generator()
+    parts = [box(f.main, (x, y, 0.035), (0, 0, 0.1), 0.004)]
+    parts += [box(f.second, (0.03, y * 0.7, 0.1), (s * x * 0.35, -y * 0.14, 0)) for s in (-1, 1)]
+    for i, u in enumerate(np.linspace(-x / 2 + 0.12, x / 2 - 0.12, 3)):
+        item = paint(str(rng.choice(["rust", "teal", "cream", "mustard", "navy", "sage", "plum"])), seed=i)
+        h = (z - 0.135) * rng.uniform(0.6, 0.95)
+        parts.append(turned(item, [(0, 0), (0.05, 0), (0.07, h * 0.4), (0.035, h), (0, h)], (float(u), 0.0, 0.135)))
+    parts.append(box(paint("burgundy"), (0.05, y * 0.6, z - 0.14), (0.0 + x * 0.2, 0, 0.135)))
+    return parts
+
+
+def sconce(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    r = min(x, y) / 2
+    return [
+        box(f.second, (x * 0.5, 0.03, z * 0.5), (0, -y / 2 + 0.015, z * 0.1)),
+        turned(_shade(f), [(0, z * 0.3), (r * 0.7, z * 0.3), (r, z), (0, z)]),
+        *tube(f.second, [(0, -y / 2 + 0.02, z * 0.35), (0, 0, z * 0.32)], 0.015),
+    ]
+
+
+def hanging_plant(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    rng = f.generator()
+    bottom = 0.25
+    pot = turned(
+        f.main, smooth([(0, bottom), (x * 0.2, bottom), (x * 0.3, bottom + 0.2), (x * 0.26, bottom + 0.24)], 8)
+    )
+    green = paint(str(rng.choice(LEAF_GREENS)), "leaf", seed=f.seed)
+    leaves = foliage(green, (x / 2, y / 2, 0.3), (0, 0, bottom + 0.12), (0.16, 0.06), 90, rng)
+    cords = [
+        p
+        for a in (0.0, 2.1, 4.2)
+        for p in tube(f.second, [(x * 0.28 * np.cos(a), x * 0.28 * np.sin(a), bottom + 0.24), (0, 0, z)], 0.006)
+    ]
+    return [pot, leaves, *cords]
+
+
+def coat_rack(size: Vector, f: Finish) -> list[Part]:
+    x, _, z = size
+    r = x / 2
+    pole = turned(f.main, [(0, 0), (r, 0), (r * 0.9, 0.03), (0.025, 0.05), (0.022, z), (0, z)])
+    hooks = [
+        p
+        for k in range(4)
+        for p in tube(
+            f.main, [(0, 0, z - 0.22), (r * 0.8 * np.cos(k * 1.57), r * 0.8 * np.sin(k * 1.57), z - 0.1)], 0.014
+        )
+    ]
+    coat = turned(
+        f.second, smooth([(0.16, 0), (0.18, 0.3), (0.12, 0.75), (0.03, 0.85)]), (r * 0.35, 0, z - 1.02), (0.9, 0.5)
+    )
+    return [pole, *hooks, coat]
