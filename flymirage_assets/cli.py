@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from flymirage_core.errors import FlyMirageError, InputError
+from flymirage_core.errors import FlyMirageError, InputError, WorldError
 from flymirage_core.progress import listening
 from flymirage_core.settings import Settings
 from flymirage_core.splats.frames import Up
@@ -75,15 +75,18 @@ def import_(
     register_only: Annotated[bool, typer.Option("--register-only", help="do not make its products now")] = False,
 ) -> None:
     """Bring a world of your own and make its whole data set."""
-    from flymirage_core.splats.imports import import_world
-
     from flymirage_assets.report import products_table
+    from flymirage_core.occupancy.doctor import examine
     from flymirage_core.scene.keys import check_scene_key
+    from flymirage_core.splats.imports import import_world
     from resources.records import SceneOrigin
 
     check_scene_key(scene)
     settings = _settings()
-    import_world(world, up, scale, settings.cleaning)  # refuse a bad file before anything is kept
+    report = examine(import_world(world, up, scale, settings.cleaning), settings.occupancy)
+    problems = [finding.sentence for finding in report.findings if finding.severity == "problem"]
+    if problems:  # before anything is kept
+        raise WorldError(f"{world} cannot be flown in: {' '.join(problems)}")
     store = _store()
     sha256 = store.keep_import(scene, world)
     store.register(
@@ -157,10 +160,9 @@ def doctor(
     scale: Annotated[float | None, typer.Option(help="metres per file unit; estimated if not given")] = None,
 ) -> None:
     """Say whether a world can be flown in, what is wrong with it, and what to do."""
+    from flymirage_assets.report import doctor_table
     from flymirage_core.occupancy.doctor import examine
     from flymirage_core.splats.imports import import_world
-
-    from flymirage_assets.report import doctor_table
 
     settings = _settings()
     report = examine(import_world(world, up, scale, settings.cleaning), settings.occupancy)

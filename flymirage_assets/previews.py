@@ -4,11 +4,11 @@ from collections.abc import Iterable
 
 import cv2
 import numpy as np
-from flymirage_core.dataset.manifest import DatasetManifest
 
 from flymirage_assets.stage import Stage
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.annotation.targets import Targets
+from flymirage_core.dataset.manifest import DatasetManifest
 from flymirage_core.language.prompts import Prompts
 from flymirage_core.language.verdicts import QualityVerdicts
 from flymirage_core.navigation.task_sets import TaskSets

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from flymirage_core.occupancy.doctor import DoctorReport
 from rich.table import Table
 
+from flymirage_core.occupancy.doctor import DoctorReport
 from resources.store import Store
 
 SCENE_PRODUCTS = (

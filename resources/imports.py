@@ -1,13 +1,13 @@
 """Worlds that the user already has: their description, their picture, and reading them out of the store."""
 
 import numpy as np
-from flymirage_core.splats.imports import import_world
 
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.picture import ScenePicture
 from flymirage_core.rendering.rasterizer import Rasterizer
 from flymirage_core.scene.description import Provenance, SceneDescription
 from flymirage_core.settings import CleaningSettings
+from flymirage_core.splats.imports import import_world
 from flymirage_core.splats.world import World
 from resources.records import SceneOrigin
 from resources.store import Store

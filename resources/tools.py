@@ -4,15 +4,14 @@ from dataclasses import dataclass
 
 from flymirage_core.annotation.annotator import Annotator
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
-from flymirage_core.rendering.cpu import CpuRasterizer
-from flymirage_core.scene.writer import OfflineSceneWriter, SceneWriter
-from flymirage_core.worldgen.model import OfflinePainter, OfflineWorldModel
-from flymirage_core.worldgen.ports import ImagePainter, WorldModel
-
 from flymirage_core.language.judge import FrameJudge, MeasuredJudge
 from flymirage_core.language.prompter import OfflinePrompter, Prompter
+from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.rendering.rasterizer import Rasterizer
+from flymirage_core.scene.writer import OfflineSceneWriter, SceneWriter
 from flymirage_core.settings import Settings
+from flymirage_core.worldgen.model import OfflinePainter, OfflineWorldModel
+from flymirage_core.worldgen.ports import ImagePainter, WorldModel
 
 
 @dataclass(frozen=True)

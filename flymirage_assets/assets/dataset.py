@@ -5,13 +5,13 @@ from pathlib import Path
 from typing import Any, cast
 
 import dagster as dg
-from flymirage_core.dataset.episodes import SceneProducts
-from flymirage_core.dataset.lerobot import DepthExport, export_lerobot
-from flymirage_core.dataset.manifest import DatasetManifest, build_manifest
 
 from flymirage_assets import previews
 from flymirage_assets.stage import ProductAsset, Stage, materialize_result, one_clear_sentence
 from flymirage_core.annotation.boxes import BoxMap
+from flymirage_core.dataset.episodes import SceneProducts
+from flymirage_core.dataset.lerobot import DepthExport, export_lerobot
+from flymirage_core.dataset.manifest import DatasetManifest, build_manifest
 from flymirage_core.errors import InputError
 from flymirage_core.language.prompts import Prompts
 from flymirage_core.language.verdicts import QualityVerdicts

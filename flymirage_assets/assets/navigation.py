@@ -1,8 +1,6 @@
 """Navigation & Collection (paper, section III-C): task sets, feasible flights, frames, verdicts, prompts."""
 
 import dagster as dg
-from flymirage_core.navigation.camera_paths import camera_paths
-from flymirage_core.navigation.fly import fly_task_sets
 
 from flymirage_assets import previews
 from flymirage_assets.stage import Stage, product_asset
@@ -10,6 +8,8 @@ from flymirage_assets.tracked import TrackedRasterizer
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.language.prompts import Prompts
 from flymirage_core.language.verdicts import QualityVerdicts
+from flymirage_core.navigation.camera_paths import camera_paths
+from flymirage_core.navigation.fly import fly_task_sets
 from flymirage_core.navigation.task_sets import TaskSets, generate_task_sets
 from flymirage_core.navigation.trajectories import Trajectories
 from flymirage_core.occupancy.voxelise import occupancy_from_splats

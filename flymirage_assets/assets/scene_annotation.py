@@ -3,15 +3,15 @@
 import math
 
 import dagster as dg
-from flymirage_core.annotation.exploration import explore
-from flymirage_core.rendering.placements import orbit
 
 from flymirage_assets import previews
 from flymirage_assets.stage import Stage, product_asset
 from flymirage_core.annotation.boxes import BoxMap
+from flymirage_core.annotation.exploration import explore
 from flymirage_core.annotation.targets import Targets, select_targets
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.progress import track
+from flymirage_core.rendering.placements import orbit
 from flymirage_core.rendering.views import PosedViews
 from flymirage_core.settings import Settings
 from flymirage_core.splats.world import World

@@ -78,6 +78,14 @@ def test_a_world_that_cannot_be_read(project: Project, kind: str, says: str) -> 
     assert not (project.folder / ".flymirage" / "store" / "scenes").exists()
 
 
+def test_a_world_whose_centre_is_inside_of_a_wall(project: Project) -> None:
+    values = splats(20_000)
+    values[:, :3] = np.random.default_rng(1).uniform(-1.5, 1.5, (len(values), 3))  # solid all round the origin
+    values[:, 6] = 5.0
+    world = write_ply(project.folder / "world.ply", values, FIELDS)
+    assert "not in free space" in one_sentence(project, "import", str(world), "--scene", "wall", "--up", "z")
+
+
 @pytest.mark.parametrize("key", ["../../etc", "My Flat", ""])
 def test_a_scene_key_that_is_not_a_name(project: Project, key: str) -> None:
     world = write_ply(project.folder / "world.ply", splats(50), FIELDS)
