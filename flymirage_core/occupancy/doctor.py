@@ -97,13 +97,14 @@ def examine(world: World, settings: OccupancySettings) -> DoctorReport:
         grid = occupancy_from_splats(world.cloud, centre, settings)
     except WorldError as error:
         grid, blocked_because = shell, str(error)
+    scale = world.notes.get("scale")  # a generated world says in words that it is metric
     x, y, z = (float(length) for length in np.multiply(shape, settings.resolution))
     report = DoctorReport(
         gaussians=len(world.cloud),
         extent=(x, y, z),
         up=f"{world.notes.get('up', 'z')} ({world.notes.get('up_source', 'as the world was made')})",
-        scale=float(world.notes.get("scale", 1.0)),
-        scale_source=str(world.notes.get("scale_source", "as the world was made")),
+        scale=float(scale) if isinstance(scale, int | float) else 1.0,
+        scale_source=str(world.notes.get("scale_source", scale or "as the world was made")),
         centre=(float(centre[0]), float(centre[1]), float(centre[2])),
         floor=None if layer is None else round(float(shell.centre_of([0, 0, layer])[2]), 6) + 0.0,
         clear_height=_clear_height(grid),

@@ -63,6 +63,11 @@ def test_a_cloud_of_dust_is_a_warning_about_floaters():
     assert {f.subject: f.severity for f in report.findings}["floaters"] == "warning"
 
 
+def test_a_generated_world_says_its_scale_in_words():
+    report = examine(World(ROOM, C, {"scale": "metric by construction"}), OccupancySettings())
+    assert (report.scale, report.scale_source) == (1.0, "metric by construction")
+
+
 def test_much_cleaning_is_a_warning():
     world = World(ROOM, C, {"removed_far": 4 * len(ROOM), "removed_giant": 3})
     assert findings(world)["cleaning"].severity == "warning"
