@@ -1,7 +1,8 @@
 """Uniform cubic B-splines in space: evaluation, derivatives, a fit with exact ends, time scaling. No planning here.
 
-N control points Q_i and one knot interval dt; the spline lives on times [0, (N - 3) dt]. Position at time t = (i + u) dt:
-p = [1 u u^2 u^3] M [Q_i .. Q_i+3]. Velocity is piecewise quadratic, acceleration piecewise linear, jerk piecewise constant.
+N control points Q_i and one knot interval dt; the spline lives on times [0, (N - 3) dt]. Position at time t = (i + u)
+dt: p = [1 u u^2 u^3] M [Q_i .. Q_i+3]. Velocity is piecewise quadratic, acceleration piecewise linear, jerk piecewise
+constant.
 """
 
 from dataclasses import dataclass
@@ -31,7 +32,7 @@ class UniformBSpline:
         return (len(self.control_points) - 3) * self.interval
 
     def at(self, times: ArrayLike, derivative: int = 0) -> Float64:
-        """Position (..., 3), or its time derivative of order 1 to 3, at ``times`` (...,), clipped to the spline's own."""
+        """Position (..., 3), or its time derivative of order 1 to 3, at ``times`` (...,) clipped to the spline's."""
         knots = np.asarray(times, float) / self.interval
         segment = np.clip(np.floor(knots + 1e-9).astype(int), 0, len(self.control_points) - 4)
         u = np.clip(knots - segment, 0.0, 1.0)
@@ -57,8 +58,8 @@ def fit_bspline(samples: ArrayLike, interval: float, derivatives: ArrayLike | No
     """The spline through samples (K, 3) taken every ``interval`` seconds: exactly at both ends, least squares between.
 
     ``derivatives`` (4, 3): first velocity, last velocity, first acceleration, last acceleration; zeros if not given. An
-    end's position, velocity and acceleration fix its three control points, so flights join without a jump. (The original
-    gives these six conditions no more weight than the samples, and jumps.) K >= 4, and N = K + 2.
+    end's position, velocity and acceleration fix its three control points, so flights join without a jump. (The
+    original gives these six conditions no more weight than the samples, and jumps.) K >= 4, and N = K + 2.
     """
     points = np.asarray(samples, float)
     ends = np.zeros((4, 3)) if derivatives is None else np.asarray(derivatives, float)

@@ -46,7 +46,7 @@ def collision(
     weight: float,
     gradient: Float64,
 ) -> float:
-    """J_d: for c = s_f - (Q_i - p) . v: nothing below 0, c^3 up to s_f, then a parabola that joins it twice smoothly."""
+    """J_d, of c = s_f - (Q_i - p) . v: nothing below 0, c^3 up to s_f, then a parabola that joins it smoothly."""
     cost = 0.0
     for n in range(len(pair_index)):
         i = pair_index[n]

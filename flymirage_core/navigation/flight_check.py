@@ -1,6 +1,7 @@
 """The independent check of a flight: shares no code with the planner, and only what passes here leaves the planner.
 
-Curves are evaluated by scipy, distances to obstacles are exact and found by search, and continuity is judged from samples.
+Curves are evaluated by scipy, distances to obstacles are exact and found by search, and continuity is judged from
+samples.
 """
 
 from dataclasses import dataclass
@@ -51,9 +52,9 @@ def check_flight(
 ) -> FlightMeasures:
     """Measures a uniform cubic B-spline flight and accepts it.
 
-    Accepted is: no sample in a blocked voxel of either grid; exact clearance at least ``inflation``; speed, acceleration
-    and jerk within the limits; both ends within `MAX_END_ERROR` and at rest; position, velocity and acceleration
-    continuous.
+    Accepted is: no sample in a blocked voxel of either grid; exact clearance at least ``inflation``; speed,
+    acceleration and jerk within the limits; both ends within `MAX_END_ERROR` and at rest; position, velocity and
+    acceleration continuous.
 
     Raises:
         PlanningError: the first of these that fails, with place and value.

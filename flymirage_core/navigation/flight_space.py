@@ -1,4 +1,4 @@
-"""`FlightSpace`: a scene's grid made ready for planning - where a drone of a given radius may be, for each radius used."""
+"""`FlightSpace`: a scene's grid made ready for planning: where drones of the radii that are used may be."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ class FlightSpace:
     @staticmethod
     def of(grid: OccupancyGrid, settings: PlannerSettings) -> "FlightSpace":
         """The spaces for the planner's inflation and, as the last resort, its least inflation."""
-        inflations = (settings.inflation,)
+        inflations: tuple[float, ...] = (settings.inflation,)
         if settings.min_inflation < settings.inflation:
             inflations += (settings.min_inflation,)
         inflated = tuple(keep_clear(grid, radius) for radius in inflations)

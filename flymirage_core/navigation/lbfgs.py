@@ -1,8 +1,8 @@
 """L-BFGS over a flight's control points, compiled together with the costs, and EGO-Planner's rebound test inside of it.
 
-Variables are the control points between the three fixed ones at each end. Written out here, not taken from scipy, because
-a flight needs a few hundred evaluations of some microseconds each, and because the rebound (arXiv 2008.08835, Algorithm 2)
-must look at every iterate.
+Variables are the control points between the three fixed ones at each end. Written out here, not taken from scipy,
+because a flight needs a few hundred evaluations of some microseconds each, and because the rebound (arXiv 2008.08835,
+Algorithm 2) must look at every iterate.
 """
 
 from typing import Final, NamedTuple
@@ -49,7 +49,7 @@ class Problem(NamedTuple):
 
 @numba.njit(cache=True, nogil=True)
 def total_cost(points: Float64, problem: Problem, gradient: Float64) -> tuple[float, float]:
-    """The weighted sum and, alone, the smoothness cost; ``gradient`` (N, 3) is overwritten, zero at the fixed points."""
+    """The weighted sum, and smoothness alone; ``gradient`` (N, 3) is overwritten, zero at the fixed points."""
     gradient[:] = 0.0
     w = problem.weights
     smooth = costs.smoothness(points, w[0], gradient)

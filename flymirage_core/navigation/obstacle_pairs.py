@@ -1,8 +1,8 @@
 """The {p, v} pairs of EGO-Planner (arXiv 2008.08835, section III): what pushes control points out of obstacles.
 
-Where the polygon of control points crosses blocked voxels, a path round them is searched; each control point inside gets a
-point p on the obstacle's surface, towards that path, and the unit direction v from the control point to it. No distance
-field is needed, and the push is bounded by a half-space.
+Where the polygon of control points crosses blocked voxels, a path round them is searched; each control point inside
+gets a point p on the obstacle's surface, towards that path, and the unit direction v from the control point to it. No
+distance field is needed, and the push is bounded by a half-space.
 """
 
 from dataclasses import dataclass
@@ -98,7 +98,7 @@ def collision_segments(points: Float64, space: OccupancyGrid, last: int | None =
 
 
 def segment_pairs(points: Float64, first: int, last: int, path: Float64, space: OccupancyGrid) -> ObstaclePairs:
-    """Pairs for the control points from ``first`` to ``last`` of (N, 3), given a free path (K, 3) that joins the two."""
+    """Pairs for the control points ``first`` to ``last`` of (N, 3), given a free path (K, 3) that joins the two."""
     found, p, v = _segment_pairs(voxels_of(space), points, first, last, np.ascontiguousarray(path))
     index = np.flatnonzero(found)
     return ObstaclePairs(index + first, p[index], v[index])
@@ -222,7 +222,7 @@ def _side(point: Float64, centre: Float64, normal: Float64) -> float:
 
 @numba.njit(cache=True, nogil=True)
 def _plane_crossing(path: Float64, point: Float64, normal: Float64, out: Float64) -> bool:
-    """Where ``path`` (K, 3) crosses the plane through ``point`` with ``normal``, walking from its middle to the plane."""
+    """Where ``path`` (K, 3), from its middle on, crosses the plane through ``point`` with ``normal``; False if not."""
     k = len(path) // 2
     here = _side(path[k], point, normal)
     step = -1 if here > 0 else 1  # the path runs along the normal
@@ -245,7 +245,7 @@ def _surface_point(
     length: float,
     out: Float64,
 ) -> None:
-    """Walking from ``length`` metres out along ``v`` voxel by voxel to ``inner``: the last point before a blocked one."""
+    """From ``length`` metres along ``v`` back to ``inner``, voxel by voxel: the last point before a blocked one."""
     at = length
     while True:
         for k in range(3):

@@ -1,8 +1,8 @@
 """EGO-Planner with a known map (arXiv 2008.08835): one flight from rest to rest, in one shot, over its full length.
 
-Each attempt: seed, B-spline fit with exact ends, {p, v} pairs, rebound optimisation, refinement of time and shape, check by
-`flight_check`. Attempts are made in a fixed order and each is recorded. Written from the paper's equations; differences
-to the authors' program are deliberate and listed in the functions' docstrings.
+Each attempt: seed, B-spline fit with exact ends, {p, v} pairs, rebound optimisation, refinement of time and shape,
+check by `flight_check`. Attempts are made in a fixed order and each is recorded. Written from the paper's equations;
+differences to the authors' program are deliberate and listed in the functions' docstrings.
 """
 
 from dataclasses import dataclass
@@ -37,6 +37,8 @@ NO_REFERENCE: Final = np.zeros((0, 3))
 CRUISE_SHARE: Final = 0.93
 RAMP_SHARE: Final = 0.8
 """The seed flies at these shares of the speed and acceleration limits."""
+MIN_DISTANCE: Final = 0.05
+"""Metres: nothing shorter is a flight."""
 CHECK_STEP: Final = 0.01
 """Metres between the points of a spline that are tested against the inflated grid."""
 LIMIT_SHARE: Final = 0.999
@@ -99,6 +101,8 @@ def plan_flight_in(
 ) -> PlannedFlight:
     """`plan_flight` in a scene that is already prepared."""
     a, b = np.array(start, float), np.array(goal, float)
+    if np.linalg.norm(b - a) < MIN_DISTANCE:
+        raise PlanningError("the drone is already there")
     record: list[str] = []
     for inflation, inflated in zip(space.inflations, space.inflated, strict=True):
         suffix = "" if inflation == space.inflations[0] else f"@{inflation:g}m"
@@ -127,7 +131,7 @@ def _attempted(seed: Float64, attempt: Attempt, space: OccupancyGrid, settings: 
     limits = np.array([settings.max_speed, settings.max_acceleration, settings.max_jerk])
     samples, interval = timed_samples(seed, CRUISE_SHARE * limits[0], RAMP_SHARE * limits[1], attempt.spacing)
     spline = _rebounded(fit_bspline(samples, interval), attempt, space, limits)
-    return _within_limits(_refined(spline, space, limits), limits)
+    return _timed(_refined(spline, space, limits), limits, settings.state_rate)
 
 
 def _rebounded(spline: UniformBSpline, attempt: Attempt, space: OccupancyGrid, limits: Float64) -> UniformBSpline:
@@ -162,8 +166,8 @@ def _rebounded(spline: UniformBSpline, attempt: Attempt, space: OccupancyGrid, l
 def _refined(spline: UniformBSpline, space: OccupancyGrid, limits: Float64) -> UniformBSpline:
     """The paper's refinement: flown slower and fitted to itself, stiff across the path and loose along it.
 
-    Returns what needs less time to keep the limits: the refined flight or, if that is no faster or meets an obstacle, the
-    given one. (The original rejects a flight whose refinement meets an obstacle.)
+    Returns what needs less time to keep the limits: the refined flight or, if that is no faster or meets an obstacle,
+    the given one. (The original rejects a flight whose refinement meets an obstacle.)
     """
     ratio = _limit_ratio(spline, limits)
     if ratio <= 1:
@@ -190,9 +194,14 @@ def _limit_ratio(spline: UniformBSpline, limits: Float64) -> float:
     return float(ratio / LIMIT_SHARE)
 
 
-def _within_limits(spline: UniformBSpline, limits: Float64) -> UniformBSpline:
-    """The same curve, slowed down as much as the limits ask: from rest to rest that is always possible."""
-    return spline.stretched(max(1.0, _limit_ratio(spline, limits)))
+def _timed(spline: UniformBSpline, limits: Float64, state_rate: float) -> UniformBSpline:
+    """The same curve, slowed down as much as the limits ask, and so that it lasts a whole number of states.
+
+    From rest to rest that is always possible.
+    """
+    duration = spline.duration * max(1.0, _limit_ratio(spline, limits))
+    states = np.ceil(duration * state_rate - 1e-9)
+    return spline.stretched(float(states / state_rate / spline.duration))
 
 
 @numba.njit(cache=True, nogil=True)

@@ -55,8 +55,8 @@ def bow_seed(start: Float64, goal: Float64, generator: np.random.Generator) -> F
 def timed_samples(path: Float64, speed: float, acceleration: float, spacing: float) -> tuple[Float64, float]:
     """Samples (K, 3) of a flight along ``path`` from rest to rest, and the seconds between them.
 
-    Speed rises and falls in half cosines, which bounds jerk as well: by 2 ``acceleration``^2 / ``speed``. Samples lie at
-    most ``spacing`` metres apart; there are at least `MIN_SAMPLES`.
+    Speed rises and falls in half cosines, which bounds jerk as well: by 2 ``acceleration``^2 / ``speed``. Samples lie
+    at most ``spacing`` metres apart; there are at least `MIN_SAMPLES`.
     """
     legs = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(legs)])  # (K',)

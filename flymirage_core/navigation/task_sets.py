@@ -1,16 +1,35 @@
-"""Task sets (paper, section III-C): N_s sets of N_o targets, each accepted by the paper's four checks.
+"""`Task` and `TaskSets`, the product of the `task_sets` asset, and `generate_task_sets` (paper, section III-C).
 
-The checks themselves, and `generate_task_sets`, live here; planning the flights does not.
+The paper's four checks are in `target_checks`; planning the flights is not here.
 """
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Final, get_args
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
+from numpy.typing import ArrayLike, NDArray
 
+from flymirage_core.annotation.boxes import BoxMap, ObjectBox
+from flymirage_core.navigation.flight_space import keep_clear
+from flymirage_core.navigation.target_checks import Reason, TaskSpace, check_target, is_sensible_target
+from flymirage_core.occupancy.grid import OccupancyGrid
+from flymirage_core.occupancy.queries import sphere_is_clear
+from flymirage_core.occupancy.search import nearest_free, reachable
+from flymirage_core.settings import TaskSettings
+
+Float64 = NDArray[np.float64]
 Point = tuple[float, float, float]
+
+STARTS_PER_SET: Final = 5
+"""Starts that are tried until one has a first target."""
+START_TRIALS: Final = 50
+"""Random free points that are tried until one is safe."""
+CENTRE_SEARCH: Final = 1.0
+"""Metres round c in which a free point is looked for if c itself is too near to something."""
 
 
 @dataclass(frozen=True)
@@ -67,3 +86,88 @@ class TaskSets:
         tasks = tuple(Task(**{**r, "start": tuple(r["start"]), "target_point": tuple(r["target_point"])}) for r in rows)
         counts = pq.read_table(folder / "rejections.parquet").to_pylist()
         return TaskSets(tasks, {r["reason"]: r["count"] for r in counts})
+
+
+def generate_task_sets(
+    grid: OccupancyGrid, boxes: BoxMap, centre: ArrayLike, settings: TaskSettings, generator: np.random.Generator
+) -> TaskSets:
+    """N_s sets of up to N_o targets, one after the other, each from where the last one ended.
+
+    Set 0 starts at the scene's centre c (3,), or the nearest point to it where the drone has room; the others at random
+    points that can be reached from there. Candidates are the boxes that are sensible targets; those that served least
+    often come first, in random order, so that objects are used evenly. No object follows itself. A set that finds no
+    further target ends early; one that finds none at all is left out.
+
+    Args:
+        grid: not inflated.
+        boxes: the scene's objects, ids unique.
+
+    Raises:
+        PlanningError: there is no room for the drone within `CENTRE_SEARCH` of c.
+    """
+    passable = keep_clear(grid, settings.passage_radius)
+    home = nearest_free(passable, centre, CENTRE_SEARCH)
+    space = TaskSpace(grid, passable, reachable(passable, home))
+    draw = _Draw([box for box in boxes if is_sensible_target(box)], space, settings, generator)
+    tasks: list[Task] = []
+    for set_index in range(settings.sets):
+        for trial in range(STARTS_PER_SET):
+            drone = home if set_index == trial == 0 else _random_start(space, settings, generator)
+            legs = _one_set(set_index, drone, draw)
+            if legs:
+                tasks += legs
+                break
+    return TaskSets(tuple(tasks), draw.rejections)
+
+
+class _Draw:
+    """Draws the next target, and remembers how often each object served and why others were turned away."""
+
+    def __init__(
+        self, candidates: list[ObjectBox], space: TaskSpace, settings: TaskSettings, generator: np.random.Generator
+    ) -> None:
+        self.candidates, self.space, self.settings, self.generator = candidates, space, settings, generator
+        self.uses = dict.fromkeys((box.object_id for box in candidates), 0)
+        self.rejections: dict[str, int] = dict.fromkeys(get_args(Reason), 0)
+
+    def next_target(self, drone: Float64, but: int | None) -> tuple[ObjectBox, Float64] | None:
+        """An accepted object other than ``but`` and its target point (3,); None if all are rejected."""
+        order = self.generator.permutation(len(self.candidates))
+        for n in sorted(order, key=lambda m: self.uses[self.candidates[m].object_id]):
+            box = self.candidates[n]
+            if box.object_id == but:
+                continue
+            answer = check_target(box, drone, self.space, self.settings)
+            if not isinstance(answer, str):
+                self.uses[box.object_id] += 1
+                return box, answer
+            self.rejections[answer] += 1
+        return None
+
+
+def _one_set(set_index: int, start: Float64, draw: _Draw) -> list[Task]:
+    tasks: list[Task] = []
+    drone, last = start, None
+    while len(tasks) < draw.settings.targets_per_set:
+        target = draw.next_target(drone, last)
+        if target is None:
+            break
+        box, point = target
+        tasks.append(Task(set_index, len(tasks), box.object_id, _as_point(drone), _as_point(point)))
+        drone, last = point, box.object_id
+    return tasks
+
+
+def _random_start(space: TaskSpace, settings: TaskSettings, generator: np.random.Generator) -> Float64:
+    """The centre (3,) of a random reachable voxel, with nothing within the safety radius if there is such a one."""
+    cells = np.argwhere(space.reachable)
+    for _ in range(START_TRIALS):
+        point = space.grid.centre_of(cells[generator.integers(len(cells))])
+        if sphere_is_clear(space.grid, point, settings.safety_radius):
+            break
+    return point
+
+
+def _as_point(vector: Float64) -> Point:
+    x, y, z = (float(value) for value in vector)
+    return x, y, z

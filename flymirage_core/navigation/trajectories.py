@@ -172,7 +172,7 @@ def _states_table(flight: Flight) -> pa.Table:
 
 def _flight_from(row: dict[str, object], states: pa.Table) -> Flight:
     def column(name: str, width: int) -> Float64:
-        return states[name].combine_chunks().flatten().to_numpy().reshape(-1, width)
+        return np.asarray(states[name].combine_chunks().flatten().to_numpy().reshape(-1, width))
 
     report = FlightReport(**{f.name: row[f.name] for f in fields(FlightReport)})  # type: ignore[arg-type]
     return Flight(

@@ -1,0 +1,113 @@
+"""The paper's four checks of a candidate target (section III-C), in its order, each with its reason to reject.
+
+Position: the drone is not inside of the object's box. Visibility: no occupied point in a cylinder round the ray from
+the drone to the box, before the ray reaches the box. Waypoint safety: no occupied point round the target point.
+Distance: the way there is 2 to 10 m long.
+"""
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from flymirage_core.annotation.boxes import ObjectBox
+from flymirage_core.errors import PlanningError
+from flymirage_core.occupancy.grid import OccupancyGrid
+from flymirage_core.occupancy.queries import cylinder_is_clear, segment_is_free, sphere_is_clear
+from flymirage_core.occupancy.search import shortest_path
+from flymirage_core.occupancy.smoothing import smooth_path
+from flymirage_core.settings import TaskSettings
+
+Float64 = NDArray[np.float64]
+Reason = Literal["inside_box", "occluded", "unsafe_waypoint", "distance"]
+
+MAX_TARGET_SIZE: Final = 3.0
+"""Metres. Longer boxes are walls, floors, counters round a room: one cannot be said to be in front of them."""
+STRUCTURE: Final = frozenset({"", "wall", "floor", "ceiling", "room", "unknown", "background"})
+"""Labels that name no object to fly to."""
+MAX_FINAL_ELEVATION: Final = np.tan(np.radians(18))
+"""Slope. The target point sees the object's centre no further off the horizon than this: the camera is level."""
+
+
+@dataclass(frozen=True, eq=False)
+class TaskSpace:
+    """Where tasks are made."""
+
+    grid: OccupancyGrid  # not inflated
+    passable: OccupancyGrid  # free for the drone's centre
+    reachable: NDArray[np.bool_]  # (X, Y, Z) the part of ``passable`` that c belongs to
+
+
+def is_sensible_target(box: ObjectBox) -> bool:
+    """Whether one would send a drone there at all: it has a name, and is neither the room nor as large as one."""
+    return box.label not in STRUCTURE and max(box.size) <= MAX_TARGET_SIZE
+
+
+def check_target(box: ObjectBox, drone: Float64, space: TaskSpace, settings: TaskSettings) -> Float64 | Reason:
+    """The target point (3,) in front of ``box`` for a drone at ``drone`` (3,), or why there is none."""
+    if box.contains(drone):
+        return "inside_box"
+    if not is_visible(box, drone, space.grid, settings.sight_radius):
+        return "occluded"
+    safe = [p for p in target_points(box, drone, settings.stand_off, space.grid) if _is_safe(p, space, settings)]
+    if not safe:
+        return "unsafe_waypoint"
+    seeing = [p for p in safe if is_visible(box, p, space.grid, settings.sight_radius)]
+    if not seeing:
+        return "occluded"
+    if not settings.min_distance <= travel_distance(space.passable, drone, seeing[0]) <= settings.max_distance:
+        return "distance"
+    return seeing[0]
+
+
+def is_visible(box: ObjectBox, drone: Float64, grid: OccupancyGrid, sight_radius: float) -> bool:
+    """The visibility check, along the ray to the box's centre.
+
+    The ray counts as having reached the object one voxel before its box: voxels of its own surface stand out by up to
+    that much, as boxes and voxels are measured apart.
+    """
+    centre = np.array(box.centre)
+    start, half = box.to_local(drone), np.array(box.size) / 2 + grid.resolution
+    outside = np.abs(start) > half
+    if not outside.any():
+        return True
+    entry = float(((np.abs(start) - half)[outside] / np.abs(start)[outside]).max())  # share of the way to the centre
+    return cylinder_is_clear(grid, drone, drone + entry * (centre - drone), sight_radius)
+
+
+def target_points(box: ObjectBox, drone: Float64, stand_off: float, grid: OccupancyGrid) -> list[Float64]:
+    """Candidate target points (3,): ``stand_off`` metres from the box, horizontally towards the drone.
+
+    Their heights are the object's centre's and others, nearest first, from which a level camera still sees it. None if
+    the drone is right above or below the object.
+    """
+    centre = np.array(box.centre)
+    towards = drone[:2] - centre[:2]
+    horizontal = float(np.linalg.norm(towards))
+    if horizontal < grid.resolution:
+        return []
+    towards = np.array([*(towards / horizontal), 0.0])
+    along = np.abs(towards @ box.rotation)[:2]  # (2,) the direction along the box's own x and y
+    reach = float(np.min(np.array(box.size[:2]) / 2 / np.maximum(along, 1e-9))) + stand_off
+    steps = int(reach * MAX_FINAL_ELEVATION / grid.resolution)
+    heights = sorted(range(-steps, steps + 1), key=lambda n: (abs(n), -n))
+    return [centre + towards * reach + [0.0, 0.0, n * grid.resolution] for n in heights]
+
+
+def travel_distance(passable: OccupancyGrid, start: Float64, end: Float64) -> float:
+    """Metres of the drone's way from ``start`` to ``end``: straight if that is free, else round what is between."""
+    if segment_is_free(passable, start, end):
+        return float(np.linalg.norm(end - start))
+    try:
+        path = smooth_path(passable, shortest_path(passable, start, end))
+    except PlanningError:
+        return float("inf")
+    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+
+
+def _is_safe(point: Float64, space: TaskSpace, settings: TaskSettings) -> bool:
+    """The waypoint safety check, and that the drone can get there."""
+    cell = space.grid.index_of(point)
+    inside = bool(space.grid.contains(cell))
+    return inside and bool(space.reachable[tuple(cell)]) and sphere_is_clear(space.grid, point, settings.safety_radius)
