@@ -116,6 +116,8 @@ class TaskSettings(Section):
     """No occupied point may lie this close to a target point."""
     stand_off: Positive = 0.8
     """Distance of the target point from the object's box, towards where the drone comes from."""
+    passage_radius: Positive = 0.3
+    """Starts and target points are joined by ways that are free for a ball of this radius: the planner's inflation."""
 
 
 class PlannerSettings(Section):
@@ -154,8 +156,9 @@ class FrameSettings(Section):
 class VerdictSettings(Section):
     """Thresholds of the measured gates."""
 
-    min_alpha_coverage: Positive = 0.9
-    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame."""
+    min_alpha_coverage: Positive = 0.75
+    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame; an open door of a captured room,
+    behind which nothing was captured, takes up to a fifth of a picture."""
     min_sharpness: Positive = 15.0
     """Least variance of the Laplacian (grey levels squared), median over frames."""
     min_brightness: Positive = 20.0
