@@ -5,6 +5,7 @@ acceleration have limits, and the drone waits in hover, before departure and aft
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -69,7 +70,7 @@ def plan_yaw(positions: Float64, target_centre: Float64, first_yaw: float | None
     while before < longest and (before % SUBSTEPS or abs(servo.yaw - reference[0]) > DEPARTURE_ANGLE):
         follow(reference[0], 0.0)
         before += 1
-    for last, angle in zip(reference[:-1], reference[1:], strict=True):
+    for last, angle in pairwise(reference):
         follow(angle, (angle - last) / dt)
     after = 0
     while after < longest and (after % SUBSTEPS or not servo.rests_at(reference[-1])):
