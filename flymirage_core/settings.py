@@ -157,8 +157,8 @@ class VerdictSettings(Section):
     """Thresholds of the measured gates."""
 
     min_alpha_coverage: Positive = 0.75
-    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame; an open door of a captured room,
-    behind which nothing was captured, takes up to a fifth of a picture."""
+    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame; the open door of a captured
+    room, behind which nothing was captured, takes up to a fifth of a picture."""
     min_sharpness: Positive = 15.0
     """Least variance of the Laplacian (grey levels squared), median over frames."""
     min_brightness: Positive = 20.0

@@ -36,6 +36,6 @@ def choose_tools(settings: Settings) -> Tools:
         world_model=OfflineWorldModel(settings.generation),
         rasterizer=rasterizer,
         annotator=EmbeddedAnnotator(settings.annotation),
-        frame_judge=MeasuredJudge(settings.verdict),
+        frame_judge=MeasuredJudge(settings.verdict, settings.planner),
         prompter=OfflinePrompter(),
     )

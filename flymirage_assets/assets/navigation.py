@@ -51,7 +51,7 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         version="1",
         group=group,
         settings=settings,
-        sections=["verdict"],
+        sections=["verdict", "planner"],
         tools=["frame_judge"],
         draw=previews.quality_verdict,
     )

@@ -46,12 +46,26 @@ SYNONYMS = (
 )
 """Words that people use for one another: a prompt with one of them may be read as any of its set."""
 
+VAGUE = {
+    "table": {"desk", "counter", "workbench", "nightstand"},
+    "seat": {"chair", "armchair", "stool", "pouf", "ottoman", "bench", "sofa"},
+    "cabinet": {"bookshelf", "wardrobe", "sideboard", "dresser", "nightstand", "tv stand", "locker"},
+    "container": {"box", "basket", "bin", "waste bin", "crate", "barrel", "suitcase"},
+    "lamp": {"ceiling light", "light", "lantern"},
+    "picture": {"poster", "painting", "mirror"},
+    "appliance": {"printer", "microwave", "refrigerator", "machine"},
+    "machine": {"printer", "gas cylinder"},
+}
+"""Family names: a thing called by one may be any of its kinds, and each of them may be called by it."""
+
 CONFUSABLE_COLOURS = (
     frozenset({"white", "beige", "cream", "light grey"}),
     frozenset({"black", "dark grey", "dark brown", "dark blue"}),
     frozenset({"grey", "silver"}),
-    frozenset({"brown", "beige", "tan", "dark orange"}),
-    frozenset({"red", "pink", "dark red", "dark pink"}),
+    frozenset({"brown", "light brown", "beige", "tan", "dark orange", "dark yellow", "olive"}),
+    frozenset({"beige", "cream", "light orange", "light yellow"}),
+    frozenset({"red", "pink", "dark pink", "light red"}),
+    frozenset({"purple", "pink"}),
     frozenset({"red", "orange"}),
     frozenset({"orange", "yellow", "gold"}),
     frozenset({"blue", "purple"}),
@@ -166,6 +180,8 @@ def named(word: str, label: str) -> Truth:
     if word == UNNAMED or label.endswith(" " + word) or word.endswith(" " + label):
         return Truth.MAYBE
     head = label.split()[-1]
+    if word in VAGUE.get(label, ()) or label in VAGUE.get(word, ()):
+        return Truth.MAYBE
     return Truth.MAYBE if any(word in kin and (label in kin or head in kin) for kin in SYNONYMS) else Truth.NO
 
 

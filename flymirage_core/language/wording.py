@@ -35,13 +35,13 @@ DIRECT = (
     "Head for {the}.",
     "Move to {the}.",
     "Approach {the}.",
-    "Locate {the} and fly to {it}.",
+    "Locate {the}, then fly to {it}.",
     "Make your way to {the}.",
     "Look for {the}.",
-    "Fly up to {the} and stop there.",
+    "Fly up to {the}, then stop.",
     "Stop in front of {the}.",
     "Your goal is {the}.",
-    "Search for {the} and approach {it}.",
+    "Search for {the}, then approach {it}.",
     "Take me to {the}.",
     "Steer towards {the}.",
     "Proceed to {the}.",
@@ -53,7 +53,7 @@ INTRODUCED = (
     "There {is} {a}. Fly to {it}.",
     "You can see {a}. Go to {it}.",
     "Look for {a}, then approach {it}.",
-    "Spot {a} and head for {it}.",
+    "Spot {a}, then head for {it}.",
 )
 """Sentences that introduce the thing before sending the drone there; they need an indefinite noun phrase."""
 
