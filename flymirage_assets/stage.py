@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from functools import cache
 from pathlib import Path
 from typing import Any, cast
 
@@ -188,7 +189,7 @@ def product_asset(
             code_version=stage.code_version,
             kinds=set(kinds),
             required_resource_keys={"io_manager"},
-            ins={name: dg.AssetIn(dagster_type=dg.PythonObjectDagsterType(hint)) for name, hint in upstream.items()},
+            ins={name: dg.AssetIn(dagster_type=_dagster_type(hint)) for name, hint in upstream.items()},
             metadata={"product": hints["return"].__name__},
         )
         def materialise(context: dg.AssetExecutionContext, **inputs: Any) -> Any:
@@ -240,6 +241,12 @@ def materialize_result(commit: Commit, store: Store) -> Any:
         picture = base64.b64encode(commit.preview).decode()
         metadata["picture"] = dg.MetadataValue.md(f"![picture](data:image/jpeg;base64,{picture})")
     return dg.MaterializeResult(value=commit, metadata=metadata, data_version=dg.DataVersion(record.digest))
+
+
+@cache
+def _dagster_type(kind: type) -> dg.DagsterType:
+    """One Dagster type for each product class: their names must be unique."""
+    return dg.PythonObjectDagsterType(kind)
 
 
 def _hash(value: Any) -> str:

@@ -11,7 +11,7 @@ from flymirage_core.annotation.exploration import explore
 from flymirage_core.annotation.targets import Targets, select_targets
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.progress import track
-from flymirage_core.rendering.placements import orbit
+from flymirage_core.rendering.placements import orbit, view_intrinsics
 from flymirage_core.rendering.views import PosedViews
 from flymirage_core.settings import Settings
 from flymirage_core.splats.world import World

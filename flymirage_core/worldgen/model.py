@@ -1,12 +1,14 @@
 """The embedded twins of the image model and the world model: a furnished, lit room out of a description, and its picture."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.picture import ScenePicture
 from flymirage_core.rendering.rasterizer import Rasterizer
 from flymirage_core.scene.description import SceneDescription
-from flymirage_core.settings import GenerationSettings, Settings
+from flymirage_core.settings import GenerationSettings
 from flymirage_core.splats.world import World
 from flymirage_core.worldgen.layout import lay_out
 from flymirage_core.worldgen.sampling import gaussians
@@ -30,15 +32,21 @@ class OfflineWorldModel:
 
     def build(self, description: SceneDescription, picture: ScenePicture | None = None) -> World:
         """A world of about ``settings.gaussians`` Gaussians; the floor's middle is the origin, c is free for 1 m around."""
-        room, truth = lay_out(description)
-        cloud = gaussians(description, room, truth, self.settings.gaussians)
-        notes = {
-            "source": f"world model {NAME}",
-            "scale": "metric by construction",
-            "objects_placed": len(truth.objects),
-            "objects_unplaced": sum(u.count for u in truth.unplaced),
-        }
-        return World(cloud, np.array(truth.centre), notes)
+        return _built(description, self.settings.gaussians)
+
+
+@lru_cache(maxsize=1)  # the painter has just built the world that the world model is asked for next
+def _built(description: SceneDescription, count: int) -> World:
+    room, truth = lay_out(description)
+    cloud = gaussians(description, room, truth, count)
+    notes = {
+        "source": f"world model {NAME}",
+        "scale": 1.0,
+        "scale_source": "metric by construction",
+        "objects_placed": len(truth.objects),
+        "objects_unplaced": sum(u.count for u in truth.unplaced),
+    }
+    return World(cloud, np.array(truth.centre), notes)
 
 
 class OfflinePainter:
@@ -46,9 +54,9 @@ class OfflinePainter:
 
     name = NAME
 
-    def __init__(self, rasterizer: Rasterizer, settings: Settings) -> None:
+    def __init__(self, rasterizer: Rasterizer, settings: GenerationSettings) -> None:
         self.rasterizer = rasterizer
-        self.model = OfflineWorldModel(settings.generation)
+        self.model = OfflineWorldModel(settings)
 
     def paint(self, description: SceneDescription) -> ScenePicture:
         world = self.model.build(description)

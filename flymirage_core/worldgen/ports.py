@@ -10,7 +10,8 @@ from flymirage_core.splats.world import World
 class ImagePainter(Protocol):
     """Paints one picture of a described scene."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     def paint(self, description: SceneDescription) -> ScenePicture: ...
 
@@ -18,6 +19,7 @@ class ImagePainter(Protocol):
 class WorldModel(Protocol):
     """Builds a metric, z-up Gaussian world from a description and its picture (paper section III-A)."""
 
-    name: str
+    @property
+    def name(self) -> str: ...
 
     def build(self, description: SceneDescription, picture: ScenePicture) -> World: ...
