@@ -15,9 +15,9 @@ from flymirage_core.occupancy.smoothing import resample_path, smooth_path
 
 Float64 = NDArray[np.float64]
 
-COMFORTABLE_CLEARANCE: Final = 0.6
+COMFORTABLE_CLEARANCE: Final = 0.5
 """Metres from obstacles beyond which a seed path pays nothing for being near to them."""
-SMOOTHING_ITERATIONS: Final = 20
+SMOOTHING_ITERATIONS: Final = 10
 """Enough to take the steps of the voxels out of a path, and not enough to pull it tight round corners."""
 MIN_SAMPLES: Final = 7
 BOW_SPACING: Final = 0.1

@@ -137,13 +137,15 @@ def _search(
         for dx in range(-1, 2):
             for dy in range(-1, 2):
                 for dz in range(-1, 2):
-                    if (dx == 0 and dy == 0 and dz == 0) or not _step_is_free(state, x, y, z, dx, dy, dz):
-                        continue
                     u, v, t = x + dx, y + dy, z + dz
+                    if not (0 <= u < state.shape[0] and 0 <= v < ny and 0 <= t < nz) or state[u, v, t] != FREE:
+                        continue
                     other = (u * ny + v) * nz + t
+                    if closed[other]:
+                        continue
                     length = np.sqrt(float(dx * dx + dy * dy + dz * dz))
                     total = cost[cell] + length * 0.5 * (price[x, y, z] + price[u, v, t])
-                    if total < cost[other] - 1e-9 and not closed[other]:
+                    if total < cost[other] - 1e-9 and _step_is_free(state, x, y, z, dx, dy, dz):
                         cost[other] = total
                         parent[other] = cell
                         estimate = total + _octile(goal[0] - u, goal[1] - v, goal[2] - t)
