@@ -108,7 +108,7 @@ class SplatTable:
     log2_opacities: Float32  # (N,)
     file_indices: NDArray[np.uint32]  # (N,) place in the cloud, which breaks ties in depth
     blocks: Float32  # (N / 256, 4) centre and radius of a ball round the block's ellipsoids
-    sh: Float32  # (N, 3 K)
+    sh: Float32  # (3 K, N)
 
     @staticmethod
     def of(cloud: GaussianCloud) -> "SplatTable":
@@ -122,7 +122,7 @@ class SplatTable:
             np.log2(np.minimum(cloud.opacities[kept], 1)),
             kept.astype(np.uint32),
             bounding_balls(means, np.float32(kernels.EXTENT) * scales.max(axis=1, initial=0)),
-            np.ascontiguousarray(cloud.sh[kept].reshape(len(kept), 3 * cloud.sh.shape[1])),
+            np.ascontiguousarray(cloud.sh[kept].reshape(len(kept), 3 * cloud.sh.shape[1]).T),
         )
 
     def arrays(self) -> kernels.Splats:

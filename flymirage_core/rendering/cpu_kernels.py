@@ -46,27 +46,29 @@ LANES = 16
 """Width of a tile in pixels, and of the vectors that LLVM makes of a row of it."""
 TILE_HEIGHT = 32
 """Height of a tile in pixels."""
-LIVENESS_PERIOD = 32
-"""After this many Gaussians a tile looks which of its rows are finished."""
+BATCH = 32
+"""Gaussians that a tile looks at before it composites them; after each batch it drops its finished rows."""
 
 # One visible Gaussian is one record of 16 floats, a cache line. Exponents are log2(alpha) / 8, see `_composite_row`:
-#   PEAK + Y_FALL dy^2 + X_CURVE (dx - X_SLOPE dy)^2 = PEAK + X_FALL dx^2 + Y_CURVE (dy - Y_SLOPE dx)^2
+#   PEAK + Y_FALL dy^2 + X_CURVE (dx - X_SLOPE dy)^2 = PEAK + X_FALL dx^2 + (dy - Y_SLOPE dx)^2 / Y_SPREAD
 RECORD = 16
 CENTRE_X, CENTRE_Y, DEPTH, PEAK = 0, 1, 2, 3  # pixels, pixels, metres, exponent at the centre
 X_CURVE, X_SLOPE, Y_FALL = 4, 5, 6
-Y_CURVE, Y_SLOPE, X_FALL = 7, 8, 9
+Y_SPREAD, Y_SLOPE, X_FALL = 7, 8, 9
 HALF_WIDTH, HALF_HEIGHT = 10, 11  # pixels, of the ellipse alpha = MIN_ALPHA
-GEOMETRY = 12  # floats up to here are written by `_project`, the colour when the Gaussian is first touched
+GEOMETRY = 12  # floats before the colour
 RED, GREEN, BLUE = 12, 13, 14
-NOT_EVALUATED = F(-1.0)  # in RED
 
 LOWEST = F(math.log2(MIN_ALPHA) / 8)
 GAUSS = F(-0.5 * math.log2(math.e) / 8)  # exponent per squared Mahalanobis distance
 BLUR_REACH = F(EXTENT * math.sqrt(BLUR))  # pixels over which a point is blurred
 
-# Planes of a tile's buffer, in pixels: red, green, blue, depth, transmittance.
-PLANE = LANES * TILE_HEIGHT
-PLANE_G, PLANE_B, PLANE_Z, PLANE_T = U(PLANE), U(2 * PLANE), U(3 * PLANE), U(4 * PLANE)
+# A row of a tile is five vectors side by side: red, green, blue, depth, light. (In planes 2 kB apart, they would share
+# the low bits of their addresses, and a processor takes a load from one for a load of what was just stored in another.)
+ROW = 5 * LANES
+ROW_G, ROW_B, ROW_Z, ROW_LIGHT = U(LANES), U(2 * LANES), U(3 * LANES), U(4 * LANES)
+CACHE_LINE = 64
+"""Bytes. Vectors that straddle two lines cost double."""
 
 # 2**x on [-1, 0] to 1e-8: a polynomial through Chebyshev nodes, weighted for the relative error.
 _NODES = np.cos(np.pi * (np.arange(400) + 0.5) / 400) / 2 - 0.5
@@ -88,7 +90,7 @@ FAST: dict[str, Any] = {
 }
 
 Splats = tuple[Float32, Float32, Float32, UInt32, Float32, Float32]
-"""means (3, N), axes (9, N), log2 opacities (N,), file indices (N,), blocks (N / 256, 4), sh (N, 3 K)."""
+"""means (3, N), axes (9, N), log2 opacities (N,), file indices (N,), blocks (N / 256, 4), sh (3 K, N)."""
 
 
 @njit(**FAST)
@@ -102,10 +104,10 @@ def render_frame(
     """
     means, axes, opacities, file_indices, blocks, sh = splats
     height, width = alpha.shape
-    count = _project(means, axes, opacities, blocks, camera, width, height, records, ids)
+    count = _project(means, axes, opacities, sh, blocks, camera, width, height, records, ids)
     order = _depth_order(records, ids, file_indices, count)
     starts, lists = _bin(records, order, width, height)
-    _blend(records, ids, means, sh, camera[9:12], starts, lists, rgb, depth, alpha)
+    _blend(records, starts, lists, rgb, depth, alpha)
 
 
 @njit(**FAST)
@@ -113,6 +115,7 @@ def _project(
     means: Float32,
     axes: Float32,
     opacities: Float32,
+    sh: Float32,
     blocks: Float32,
     camera: Float64,
     width: int,
@@ -121,24 +124,25 @@ def _project(
     ids: UInt32,
 ) -> int:
     """Write the record and the index of every Gaussian whose ellipse meets the image; return how many."""
-    found = np.empty((GEOMETRY, BLOCK), np.float32)
-    keep = np.empty(BLOCK, np.uint8)
     count = 0
     for block in range(len(blocks)):
         if not _block_in_view(blocks[block], camera, F(width), F(height)):
             continue
         first = block * BLOCK
         last = min(first + BLOCK, means.shape[1])
-        _project_block(
-            means[:, first:last], axes[:, first:last], opacities[first:last], camera, F(width), F(height), found, keep
-        )
+        found, keep = _project_block(means, axes, opacities, first, last, camera, F(width), F(height))
+        before = count
         for i in range(last - first):
             if keep[i]:
                 for k in range(GEOMETRY):
                     records[count, k] = found[k, i]
-                records[count, RED] = NOT_EVALUATED
                 ids[count] = first + i
                 count += 1
+        if count > before:
+            colours = _colour_block(means, sh, first, last, camera)
+            for j in range(before, count):
+                for k in range(3):
+                    records[j, RED + k] = colours[k, ids[j] - first]
     return count
 
 
@@ -174,13 +178,13 @@ def _project_block(
     means: Float32,
     axes: Float32,
     opacities: Float32,
+    first: int,
+    last: int,
     camera: Float64,
     w: np.float32,
     h: np.float32,
-    found: Float32,
-    keep: NDArray[np.uint8],
-) -> None:
-    """EWA splatting of up to 256 Gaussians into the columns of ``found`` (12, 256), in straight-line vector code.
+) -> tuple[Float32, NDArray[np.uint8]]:
+    """EWA splatting of up to 256 Gaussians: their records by columns (12, 256), and which of them meet the image.
 
     Camera coordinates are computed in float64: depths come out as the float32 nearest to the truth, so the order (half
     of a captured room's Gaussians have a neighbour at the very same depth) does not hang on the processor.
@@ -195,8 +199,15 @@ def _project_block(
         -cy / fy - margin_y,
         (h - cy) / fy + margin_y,
     )
-    for i in range(len(opacities)):
-        d0, d1, d2 = means[0, i] - e0, means[1, i] - e1, means[2, i] - e2
+    m0, m1, m2 = means[0, first:last], means[1, first:last], means[2, first:last]
+    a0, a1, a2 = axes[0, first:last], axes[1, first:last], axes[2, first:last]
+    b0, b1, b2 = axes[3, first:last], axes[4, first:last], axes[5, first:last]
+    c0, c1, c2 = axes[6, first:last], axes[7, first:last], axes[8, first:last]
+    opacity = opacities[first:last]
+    found = np.empty((GEOMETRY, BLOCK), np.float32)  # made here, so that LLVM knows that nothing else lies there
+    keep = np.empty(BLOCK, np.uint8)
+    for i in range(last - first):
+        d0, d1, d2 = m0[i] - e0, m1[i] - e1, m2[i] - e2
         x, y, z = F(R0 * d0 + R1 * d1 + R2 * d2), F(R3 * d0 + R4 * d1 + R5 * d2), F(R6 * d0 + R7 * d1 + R8 * d2)
         in_depth = (z >= F(NEAR)) & (z <= F(FAR))
         per_z = F(1) / (z if in_depth else F(1))
@@ -205,30 +216,30 @@ def _project_block(
         j0, j1, j2 = fx * per_z * (r0 - tx * r6), fx * per_z * (r1 - tx * r7), fx * per_z * (r2 - tx * r8)
         k0, k1, k2 = fy * per_z * (r3 - ty * r6), fy * per_z * (r4 - ty * r7), fy * per_z * (r5 - ty * r8)
         ax, ay = (
-            j0 * axes[0, i] + j1 * axes[1, i] + j2 * axes[2, i],
-            k0 * axes[0, i] + k1 * axes[1, i] + k2 * axes[2, i],
+            j0 * a0[i] + j1 * a1[i] + j2 * a2[i],
+            k0 * a0[i] + k1 * a1[i] + k2 * a2[i],
         )
         bx, by = (
-            j0 * axes[3, i] + j1 * axes[4, i] + j2 * axes[5, i],
-            k0 * axes[3, i] + k1 * axes[4, i] + k2 * axes[5, i],
+            j0 * b0[i] + j1 * b1[i] + j2 * b2[i],
+            k0 * b0[i] + k1 * b1[i] + k2 * b2[i],
         )
         gx, gy = (
-            j0 * axes[6, i] + j1 * axes[7, i] + j2 * axes[8, i],
-            k0 * axes[6, i] + k1 * axes[7, i] + k2 * axes[8, i],
+            j0 * c0[i] + j1 * c1[i] + j2 * c2[i],
+            k0 * c0[i] + k1 * c1[i] + k2 * c2[i],
         )
         sxx, sxy, syy = ax * ax + bx * bx + gx * gx, ax * ay + bx * by + gx * gy, ay * ay + by * by + gy * gy
         # Cauchy-Binet: the determinant as a sum of squares, where sxx syy - sxy^2 would cancel
         ab, bg, ga = ax * by - ay * bx, bx * gy - by * gx, gx * ay - gy * ax
         det = ab * ab + bg * bg + ga * ga + F(BLUR) * (sxx + syy) + F(BLUR) * F(BLUR)
         sxx, syy = sxx + F(BLUR), syy + F(BLUR)
-        peak = opacities[i] * F(0.125)
+        peak = opacity[i] * F(0.125)
         reach2 = (LOWEST - peak) / GAUSS  # squared Mahalanobis distance at which alpha is MIN_ALPHA
         u, v = fx * x * per_z + cx, fy * y * per_z + cy
         half_width, half_height = math.sqrt(max(reach2, F(0)) * sxx), math.sqrt(max(reach2, F(0)) * syy)
         per_det, per_xx, per_yy = F(1) / det, F(1) / sxx, F(1) / syy
         found[CENTRE_X, i], found[CENTRE_Y, i], found[DEPTH, i], found[PEAK, i] = u, v, z, peak
         found[X_CURVE, i], found[X_SLOPE, i], found[Y_FALL, i] = GAUSS * syy * per_det, sxy * per_yy, GAUSS * per_yy
-        found[Y_CURVE, i], found[Y_SLOPE, i], found[X_FALL, i] = GAUSS * sxx * per_det, sxy * per_xx, GAUSS * per_xx
+        found[Y_SPREAD, i], found[Y_SLOPE, i], found[X_FALL, i] = det * per_xx / GAUSS, sxy * per_xx, GAUSS * per_xx
         found[HALF_WIDTH, i], found[HALF_HEIGHT, i] = half_width, half_height
         keep[i] = (
             in_depth
@@ -238,6 +249,34 @@ def _project_block(
             & (v + half_height > F(0))
             & (v - half_height < h)
         )
+    return found, keep
+
+
+@njit(**FAST)
+def _colour_block(means: Float32, sh: Float32, first: int, last: int, camera: Float64) -> Float32:
+    """The colours (3, 256) that up to 256 Gaussians show to the camera: max(0.5 + SH(direction), 0)."""
+    px, py, pz = means[0, first:last], means[1, first:last], means[2, first:last]
+    ex, ey, ez = F(camera[9]), F(camera[10]), F(camera[11])
+    basis = np.empty((16, BLOCK), np.float32)
+    for i in range(last - first):  # all four bands: cheaper than to ask
+        dx, dy, dz = px[i] - ex, py[i] - ey, pz[i] - ez
+        scale = F(1) / math.sqrt(dx * dx + dy * dy + dz * dz + F(1e-20))
+        x, y, z = dx * scale, dy * scale, dz * scale
+        xx, yy, zz = x * x, y * y, z * z
+        basis[0, i] = SH0
+        basis[1, i], basis[2, i], basis[3, i] = -SH1 * y, SH1 * z, -SH1 * x
+        basis[4, i], basis[5, i], basis[6, i] = SH2_XY * x * y, -SH2_XY * y * z, SH2_Z2 * (F(3) * zz - F(1))
+        basis[7, i], basis[8, i] = -SH2_XY * x * z, SH2_X2 * (xx - yy)
+        basis[9, i], basis[10, i] = -SH3_0 * y * (F(3) * xx - yy), SH3_1 * x * y * z
+        basis[11, i], basis[12, i] = -SH3_2 * y * (F(5) * zz - F(1)), SH3_3 * z * (F(5) * zz - F(3))
+        basis[13, i], basis[14, i] = -SH3_2 * x * (F(5) * zz - F(1)), SH3_4 * z * (xx - yy)
+        basis[15, i] = -SH3_0 * x * (xx - F(3) * yy)
+    colours = np.full((3, BLOCK), F(0.5), np.float32)
+    for k in range(len(sh)):
+        coefficients = sh[k, first:last]
+        for i in range(last - first):
+            colours[k % 3, i] += basis[k // 3, i] * coefficients[i]
+    return np.maximum(colours, F(0))
 
 
 @njit(**FAST)
@@ -321,43 +360,53 @@ def _tile(coordinate: np.float32, tiles: int) -> int:
 
 
 @njit(**FAST)
-def _blend(
-    records: Float32,
-    ids: UInt32,
-    means: Float32,
-    sh: Float32,
-    eye: Float64,
-    starts: Int64,
-    lists: UInt32,
-    rgb: Float32,
-    depth: Float32,
-    alpha: Float32,
-) -> None:
+def _blend(records: Float32, starts: Int64, lists: UInt32, rgb: Float32, depth: Float32, alpha: Float32) -> None:
     """Composite tile by tile, in a buffer that stays in the first-level cache."""
     height, width = alpha.shape
     columns = (width + LANES - 1) // LANES
-    tile = np.empty(5 * PLANE, np.float32)
+    tile = _aligned(ROW * TILE_HEIGHT)
     live = np.empty(TILE_HEIGHT, np.uint8)
-    basis = np.empty(16, np.float32)
+    batch = np.empty((BATCH, 3), np.int64)
     for index in range(len(starts) - 1):
         left, top = (index % columns) * LANES, (index // columns) * TILE_HEIGHT
-        tile_height = min(TILE_HEIGHT, height - top)
-        tile[: 4 * PLANE] = F(0)
-        tile[4 * PLANE :] = F(1)
-        live[:] = 1
-        for k in range(starts[index], starts[index + 1]):
-            p = records[lists[k]]
-            first, last = _rows_met(p, F(left), F(top), tile_height)
-            if first > last:
-                continue
-            if p[RED] < F(0):
-                _evaluate_colour(p, ids[lists[k]], means, sh, eye, basis)
-            _composite(tile, live, p, F(left), F(top), first, last)
-            if (k - starts[index]) % LIVENESS_PERIOD == LIVENESS_PERIOD - 1 and not _find_live_rows(
-                tile, live, min(LANES, width - left), tile_height
-            ):
+        tile_width, tile_height = min(LANES, width - left), min(TILE_HEIGHT, height - top)
+        tile[:] = F(0)
+        for y in range(TILE_HEIGHT):
+            live[y] = 1
+            for lane in range(LANES):
+                tile[y * ROW + 4 * LANES + lane] = F(1)
+        for first in range(starts[index], starts[index + 1], BATCH):
+            last = min(first + BATCH, starts[index + 1])
+            met = _look_ahead(records, lists[first:last], F(left), F(top), tile_height, batch)
+            for k in range(met):
+                _composite(tile, live, records[batch[k, 0]], F(left), F(top), batch[k, 1], batch[k, 2])
+            if not _find_live_rows(tile, live, tile_width, tile_height):
                 break
         _write_tile(tile, left, top, rgb, depth, alpha)
+
+
+@njit(**FAST)
+def _look_ahead(
+    records: Float32, gaussians: UInt32, left: np.float32, top: np.float32, tile_height: int, batch: Int64
+) -> int:
+    """Write (Gaussian, first row, last row) of those that meet the tile into ``batch``; return how many.
+
+    Apart from the compositing because it waits for memory, and here for many records at once.
+    """
+    met = 0
+    for gaussian in gaussians:
+        first, last = _rows_met(records[gaussian], left, top, tile_height)
+        batch[met, 0], batch[met, 1], batch[met, 2] = gaussian, first, last
+        met += first <= last
+    return met
+
+
+@njit(**FAST)
+def _aligned(size: int) -> Float32:
+    """Float32 scratch (size,) that starts at a cache line."""
+    room = np.empty(size + CACHE_LINE // 4, np.float32)
+    skipped = (-room.ctypes.data % CACHE_LINE) // 4
+    return room[skipped : skipped + size]
 
 
 @njit(**FAST)
@@ -370,50 +419,16 @@ def _rows_met(p: Float32, left: np.float32, top: np.float32, tile_height: int) -
     low, high = left + F(0.5) - p[CENTRE_X], left + F(LANES - 0.5) - p[CENTRE_X]
     lean = p[X_SLOPE] * p[HALF_HEIGHT]
     dx_top, dx_bottom = min(max(-lean, low), high), min(max(lean, low), high)
-    inside_top = (LOWEST - p[PEAK] - p[X_FALL] * dx_top * dx_top) / p[Y_CURVE]
-    inside_bottom = (LOWEST - p[PEAK] - p[X_FALL] * dx_bottom * dx_bottom) / p[Y_CURVE]
-    if inside_top < F(0) and inside_bottom < F(0):
-        return 1, 0
+    inside_top = (LOWEST - p[PEAK] - p[X_FALL] * dx_top * dx_top) * p[Y_SPREAD]
+    inside_bottom = (LOWEST - p[PEAK] - p[X_FALL] * dx_bottom * dx_bottom) * p[Y_SPREAD]
     centre = p[CENTRE_Y] - top - F(0.5)
     slack = F(0.01)  # pixels; rounding must not cost a row
     first = centre + p[Y_SLOPE] * dx_top - math.sqrt(max(inside_top, F(0))) - slack
     last = centre + p[Y_SLOPE] * dx_bottom + math.sqrt(max(inside_bottom, F(0))) + slack
-    first, last = max(first, F(0)), min(last, F(tile_height - 1))
-    return max(math.ceil(first), 0), min(math.floor(last), tile_height - 1)
-
-
-@njit(**FAST)
-def _evaluate_colour(p: Float32, gaussian: int, means: Float32, sh: Float32, eye: Float64, basis: Float32) -> None:
-    """Write the colour that the Gaussian shows to the camera into its record: max(0.5 + SH(direction), 0)."""
-    red, green, blue = F(0.5), F(0.5), F(0.5)
-    x, y, z = means[0, gaussian] - F(eye[0]), means[1, gaussian] - F(eye[1]), means[2, gaussian] - F(eye[2])
-    scale = F(1) / math.sqrt(x * x + y * y + z * z + F(1e-20))
-    terms = sh.shape[1] // 3
-    _sh_basis(x * scale, y * scale, z * scale, terms, basis)
-    for k in range(terms):
-        red += basis[k] * sh[gaussian, 3 * k]
-        green += basis[k] * sh[gaussian, 3 * k + 1]
-        blue += basis[k] * sh[gaussian, 3 * k + 2]
-    p[RED], p[GREEN], p[BLUE] = max(red, F(0)), max(green, F(0)), max(blue, F(0))
-
-
-@njit(**FAST)
-def _sh_basis(x: np.float32, y: np.float32, z: np.float32, terms: int, basis: Float32) -> None:
-    """The first ``terms`` real spherical harmonics (1, 4, 9 or 16) at the unit direction (x, y, z)."""
-    basis[0] = SH0
-    if terms > 1:
-        basis[1], basis[2], basis[3] = -SH1 * y, SH1 * z, -SH1 * x
-    if terms > 4:
-        xx, yy, zz = x * x, y * y, z * z
-        basis[4], basis[5] = SH2_XY * x * y, -SH2_XY * y * z
-        basis[6] = SH2_Z2 * (F(3) * zz - F(1))
-        basis[7], basis[8] = -SH2_XY * x * z, SH2_X2 * (xx - yy)
-        if terms > 9:
-            basis[9], basis[10] = -SH3_0 * y * (F(3) * xx - yy), SH3_1 * x * y * z
-            basis[11] = -SH3_2 * y * (F(5) * zz - F(1))
-            basis[12] = SH3_3 * z * (F(5) * zz - F(3))
-            basis[13] = -SH3_2 * x * (F(5) * zz - F(1))
-            basis[14], basis[15] = SH3_4 * z * (xx - yy), -SH3_0 * x * (xx - F(3) * yy)
+    if max(inside_top, inside_bottom) < F(0):
+        last = F(-1)
+    first, last = min(max(first, F(0)), F(TILE_HEIGHT)), max(min(last, F(tile_height - 1)), F(-1))
+    return max(int(math.ceil(first)), 0), min(int(math.floor(last)), tile_height - 1)  # noqa: RUF046 - a float in numba
 
 
 @njit(**FAST)
@@ -427,7 +442,7 @@ def _composite(
     for y in range(first, last + 1):
         if live[y]:
             dy = F(y) - centre_y
-            _composite_row(tile, U(y * LANES), centre_x + slope * dy, peak + fall * dy * dy, curve, red, green, blue, z)
+            _composite_row(tile, U(y * ROW), centre_x + slope * dy, peak + fall * dy * dy, curve, red, green, blue, z)
 
 
 @njit(**FAST)
@@ -457,16 +472,16 @@ def _composite_row(
         root = root * root
         opacity = min(root * root, F(MAX_ALPHA))
         opacity = opacity if exponent >= LOWEST else F(0)
-        light = tile[i + PLANE_T]
+        light = tile[i + ROW_LIGHT]
         weight = opacity * light
         left = light - weight
         stop = left <= F(T_STOP)
         weight = F(0) if stop else weight
         tile[i] += weight * red
-        tile[i + PLANE_G] += weight * green
-        tile[i + PLANE_B] += weight * blue
-        tile[i + PLANE_Z] += weight * z
-        tile[i + PLANE_T] = -abs(light) if stop else left
+        tile[i + ROW_G] += weight * green
+        tile[i + ROW_B] += weight * blue
+        tile[i + ROW_Z] += weight * z
+        tile[i + ROW_LIGHT] = -abs(light) if stop else left
 
 
 @njit(**FAST)
@@ -477,7 +492,7 @@ def _find_live_rows(tile: Float32, live: NDArray[np.uint8], tile_width: int, til
         if live[y]:
             most = F(-1)
             for x in range(tile_width):
-                most = max(most, tile[4 * PLANE + y * LANES + x])
+                most = max(most, tile[y * ROW + 4 * LANES + x])
             if most > F(0):
                 live_rows += 1
             else:
@@ -491,10 +506,10 @@ def _write_tile(tile: Float32, left: int, top: int, rgb: Float32, depth: Float32
     height, width = alpha.shape
     for y in range(min(TILE_HEIGHT, height - top)):
         for x in range(min(LANES, width - left)):
-            i = y * LANES + x
-            covered = F(1) - abs(tile[4 * PLANE + i])
+            i = y * ROW + x
+            covered = F(1) - abs(tile[i + 4 * LANES])
             rgb[top + y, left + x, 0] = tile[i]
-            rgb[top + y, left + x, 1] = tile[PLANE + i]
-            rgb[top + y, left + x, 2] = tile[2 * PLANE + i]
-            depth[top + y, left + x] = tile[3 * PLANE + i] / max(covered, F(1e-10))
+            rgb[top + y, left + x, 1] = tile[i + LANES]
+            rgb[top + y, left + x, 2] = tile[i + 2 * LANES]
+            depth[top + y, left + x] = tile[i + 3 * LANES] / max(covered, F(1e-10))
             alpha[top + y, left + x] = covered
