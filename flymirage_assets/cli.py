@@ -144,8 +144,10 @@ def lerobot(
     depth: Annotated[str, typer.Option(help="png16 (lossless millimetres) or none")] = "png16",
 ) -> None:
     """LeRobot v3.0: video, depth, state, action, instructions."""
+    from flymirage_assets.assets.dataset import check_exportable
     from flymirage_assets.runs import RunError, dagster_instance, run_export
 
+    check_exportable(_store())
     with dagster_instance() as instance, _progress():
         outcome = run_export(instance, str(out.absolute()), depth)
     if outcome.error:

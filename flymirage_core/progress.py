@@ -43,5 +43,5 @@ def track(items: Iterable[T], what: str, total: int) -> Iterator[T]:
         return
     listener(what, 0, total)
     for done, item in enumerate(items, start=1):
+        listener(what, done, total)  # before it is handed out: not everyone asks for more after the last
         yield item
-        listener(what, done, total)

@@ -39,6 +39,12 @@ def finished_scenes(store: Store) -> list[str]:
     return [s for s in store.scenes() if all(store.current(asset, s) is not None for asset in _NEEDED)]
 
 
+def check_exportable(store: Store) -> None:
+    """Raise `InputError` if no scene is finished."""
+    if not finished_scenes(store):
+        raise InputError("there is nothing to export: no scene has all its products yet; run `flymirage grow`")
+
+
 def scene_products(store: Store, scene: str) -> SceneProducts:
     """All products of one scene, loaded (videos stay on disk until asked for)."""
     values = {asset: kind.load(store.folder(asset, scene)) for asset, kind in _NEEDED.items()}
@@ -90,8 +96,7 @@ def dataset_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         """The data set as a LeRobot v3.0 folder: video, depth, state, action, instructions."""
         store = cast(ProductIOManager, context.resources.io_manager).store
         with one_clear_sentence():
-            if not finished_scenes(store):
-                raise InputError("there is nothing to export: no scene has all its products yet; run `flymirage grow`")
+            check_exportable(store)
             folder = Path(config.folder).absolute()
             report = export_lerobot(all_products(store), folder, DepthExport(config.depth))
         return dg.MaterializeResult(metadata={**report.summary(), "folder": dg.MetadataValue.path(str(folder))})
