@@ -63,9 +63,10 @@ class Store:
         return parse_origin(path.read_text(), str(path)) if path.exists() else None
 
     def scenes(self) -> list[str]:
-        """Keys of all registered scenes, sorted."""
-        folder = self.base / "scenes"
-        return sorted(p.stem for p in folder.iterdir() if p.suffix == ".json") if folder.exists() else []
+        """Keys, sorted, of all scenes that were registered, or described (from a key typed in the UI)."""
+        registered, described = self.base / "scenes", self.base / "products" / "description"
+        keys = {p.stem for p in registered.iterdir() if p.suffix == ".json"} if registered.exists() else set()
+        return sorted(keys | ({p.name for p in described.iterdir()} if described.exists() else set()))
 
     def keep_import(self, scene: str, source: Path) -> str:
         """Copy a world file into the store; return its sha256."""

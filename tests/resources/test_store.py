@@ -154,6 +154,11 @@ def test_scenes_are_listed_and_their_origin_is_read_back(store: Store) -> None:
     assert store.origin("nobody") is None
 
 
+def test_a_scene_that_was_only_typed_in_the_ui_is_listed_too(store: Store) -> None:
+    commit(store, "hello", asset="description", scene="typed")
+    assert store.scenes() == ["typed"]
+
+
 def test_an_imported_file_that_changed_is_refused(tmp_path: Path) -> None:
     store = open_store(str(tmp_path / "store"))
     world = tmp_path / "World.SPZ"
