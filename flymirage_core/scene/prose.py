@@ -62,7 +62,8 @@ def phrase_for(planned: PlannedObject) -> str:
     >>> phrase_for(PlannedObject(noun="vase", count=2, colour="teal", material="stoneware", placement="on_surface"))
     'two teal stoneware vases'
     """
-    words = planned.colour if planned.colour == planned.material else f"{planned.colour} {planned.material}"
+    said = planned.material in (planned.colour, planned.noun.split()[0]) or " of " in planned.noun
+    words = planned.colour if said else f"{planned.colour} {planned.material}"
     if planned.count == 1:
         return f"{article(words)} {words} {planned.noun}"
     count = NUMBERS[planned.count] if planned.count < len(NUMBERS) else str(planned.count)

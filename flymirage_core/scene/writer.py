@@ -4,7 +4,7 @@ import json
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
@@ -14,22 +14,12 @@ from flymirage_core.scene.prose import prose_of
 from flymirage_core.scene.taxonomy import Taxonomy, standard_taxonomy
 
 NAME = "offline 1"
-OBJECTS_WANTED = (82, 95)
+OBJECTS_WANTED = (88, 98)
 """How many objects a description asks for; the paper's scenes have 60 to 100, and not all of them can be found again."""
 SIZE_RANGE = ((9.6, 12.0), (8.4, 10.0), (2.9, 3.5))
 """Metres: length, width and height of rooms."""
-FILLERS = (
-    "painting",
-    "small plant",
-    "vase",
-    "stack of books",
-    "storage box",
-    "poster",
-    "candle holder",
-    "potted plant",
-)
-"""What is added where a place's own sets ask for too little."""
-FILLER_PLACES = {"painting": "on_wall", "poster": "on_wall", "potted plant": "on_floor"}
+WALL_SHARE = 0.2
+"""Of all objects, how many hang on walls before fillers go elsewhere."""
 
 
 class SceneWriter(Protocol):
@@ -63,7 +53,7 @@ class OfflineSceneWriter:
         style = (
             f"{_any(generator, look['styles'])}, {_any(generator, look['floors'])}, {_any(generator, look['walls'])}"
         )
-        objects = _objects(data, kits, generator)
+        objects = _objects(data, kits, look["fillers"], generator)
         accents = [o.colour for o in objects if o.placement in ("against_wall", "on_floor")][:3]
         x, y, z = (round(float(generator.uniform(a, b)), 1) for a, b in SIZE_RANGE)
         description = SceneDescription(
@@ -83,18 +73,54 @@ class OfflineSceneWriter:
         return description.model_copy(update={"prose": prose_of(description, generator)})
 
 
-def _objects(data: dict[str, Any], kits: list[str], generator: np.random.Generator) -> tuple[PlannedObject, ...]:
+class Want(NamedTuple):
+    """A kind of thing at a kind of place."""
+
+    noun: str
+    placement: str
+    relative_to: str = ""
+
+
+def _fill_up(
+    counts: dict[Want, int],
+    wanted: int,
+    fillers: dict[str, list[str]],
+    holds: dict[str, int],
+    generator: np.random.Generator,
+) -> None:
+    """Add furniture for the small things to stand on where it lacks, then things of the category up to ``wanted``."""
+
+    def total(placement: str) -> int:
+        return sum(n for want, n in counts.items() if want.placement == placement)
+
+    def room_on_top() -> int:
+        return sum(holds.get(want.noun, 0) * n for want, n in counts.items()) - total("on_surface")
+
+    turn = 0
+    while room_on_top() < 0 or sum(counts.values()) < wanted:
+        if room_on_top() < 0:
+            placement = "against_wall"
+        elif total("on_wall") < WALL_SHARE * wanted:
+            placement = "on_wall"
+        elif room_on_top() > 0 and turn % 3:
+            placement = "on_surface"
+        else:
+            placement = "on_floor" if turn % 4 else "against_wall"
+        want = Want(_any(generator, fillers[placement]), placement)
+        counts[want] = counts.get(want, 0) + 1
+        turn += 1
+
+
+def _objects(
+    data: dict[str, Any], kits: list[str], fillers: dict[str, list[str]], generator: np.random.Generator
+) -> tuple[PlannedObject, ...]:
     """What stands in the room: the sets' things, in two finishes where there are many, filled up to what is wanted."""
-    wanted = int(generator.integers(*OBJECTS_WANTED))
-    counts: dict[tuple[str, str, str], int] = {}
+    counts: dict[Want, int] = {}
     for kit in kits:
         for row in data["sets"][kit]:
-            key = row["noun"], row["placement"], row["relative_to"]
-            counts[key] = counts.get(key, 0) + int(generator.integers(row["least"], row["most"] + 1))
-    while sum(counts.values()) < wanted:
-        noun = str(generator.choice(FILLERS))
-        key = noun, FILLER_PLACES.get(noun, "on_surface"), ""
-        counts[key] = counts.get(key, 0) + 1
+            want = Want(row["noun"], row["placement"], row["relative_to"])
+            counts[want] = counts.get(want, 0) + int(generator.integers(row["least"], row["most"] + 1))
+    _fill_up(counts, int(generator.integers(*OBJECTS_WANTED)), fillers, data["holds"], generator)
     planned = []
     for (noun, placement, relative_to), count in counts.items():
         finish = data["finishes"][data["nouns"][noun]]

@@ -19,7 +19,7 @@ class Kind:
     """A buildable kind of thing: sizes in metres (x, y, z) from ``smallest`` to ``largest``.
 
     ``top`` is where small things can stand, as a share of its height (0 = nowhere). A ``square`` kind keeps its proportions;
-    a ``full_height`` one reaches from floor to ceiling.
+    a ``full_height`` one reaches from floor to ceiling; a ``flat`` one lies on the floor under other things.
     """
 
     build: Builder
@@ -28,6 +28,7 @@ class Kind:
     top: float = 0.0
     square: bool = False
     full_height: bool = False
+    flat: bool = False
 
     def size(self, rng: np.random.Generator, room_height: float) -> Vector:
         """A size within the range: large in all directions or small in all, with some freedom unless ``square``."""
@@ -111,6 +112,7 @@ KINDS: dict[str, Kind] = {
     "trolley": _kind(utility.trolley, (0.75, 0.95), (0.48, 0.56), (0.85, 0.98)),
     "pallet of sacks": _kind(utility.pallet, (1.0, 1.2), (0.8, 1.0), (0.5, 0.85)),
     "column": replace(_round(utility.column, (0.42, 0.5), (1.0, 1.0)), full_height=True),
+    "rug": replace(_kind(decor.rug, (2.2, 2.8), (1.5, 1.9), (0.006, 0.006)), flat=True),
     # on surfaces
     "table lamp": _round(decor.table_lamp, (0.26, 0.34), (0.42, 0.55)),
     "vase": _round(decor.vase, (0.17, 0.24), (0.28, 0.42)),

@@ -8,7 +8,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flymirage_core.scene.description import PlannedObject, SceneDescription
 from flymirage_core.scene.keys import rng as seeded
@@ -17,6 +16,8 @@ from flymirage_core.worldgen.footprints import Occupied, Solid
 from flymirage_core.worldgen.room import Room, room_for
 from flymirage_core.worldgen.truth import PlacedObject, Unplaced, WorldTruth
 
+CHAIR_SPACE = 0.5
+"""Metres kept free round a table in the open, on top of the walkway."""
 FREE_BALL = 1.05
 """Metres round c that stay empty."""
 WALL_GAP = 0.03
@@ -26,7 +27,7 @@ SIDE_GAP = 0.14
 PASSAGE = 1.0
 """Between tall groups in the open: a drone's corridor at any height."""
 WALKWAY = 0.6
-"""Between a low group in the open and anything else."""
+"""Between a low group in the open and anything else; half of it where there is no room for more."""
 TALL = 1.0
 """Metres; higher things need a `PASSAGE` round them unless they stand at a wall."""
 TABLE_GAP = 0.05
@@ -36,7 +37,7 @@ FRONT_OF_PICTURE = 0.35
 """Nothing stands this close before a thing on the wall."""
 LOW_HANGING = 1.95
 """Nothing hangs lower than this, except over a table."""
-TRIES = 160
+TRIES = 250
 """Random spots that are tried for one object or group."""
 
 
@@ -49,6 +50,7 @@ class Layout:
     centre: tuple[float, float, float]
     objects: list[PlacedObject] = field(default_factory=list)
     occupied: Occupied = field(default_factory=Occupied)
+    kept_clear: Occupied = field(default_factory=Occupied)  # before windows and doors
     missing: dict[tuple[str, str], int] = field(default_factory=dict)
     anchored: dict[int, int] = field(default_factory=dict)  # chairs already round each anchor
 
@@ -58,6 +60,10 @@ class Layout:
         reach = solid.reach
         inside = abs(solid.x) + reach[0] <= x / 2 and abs(solid.y) + reach[1] <= y / 2 and solid.top <= z + 1e-6
         return inside and solid.distance_to(self.centre) >= FREE_BALL and not self.occupied.hits(solid, gap)
+
+    def fits_clear(self, solid: Solid, gap: float) -> bool:
+        """`fits`, and not before a window or door either."""
+        return self.fits(solid, gap) and not self.kept_clear.hits(solid, 0.0)
 
     def put(self, planned: PlannedObject, solid: Solid, seed: int, support: int = -1) -> int:
         """Record an object; returns its id."""
@@ -76,7 +82,8 @@ class Layout:
                 seed,
             )
         )
-        self.occupied.add(solid)
+        if not kind_of(planned.noun).flat:
+            self.occupied.add(solid)
         return number
 
     def miss(self, noun: str, reason: str, count: int = 1) -> None:
@@ -106,8 +113,10 @@ def lay_out(description: SceneDescription) -> tuple[Room, WorldTruth]:
 
 
 def _footprint(planned: PlannedObject) -> float:
-    x, y, z = kind_of(planned.noun).largest
-    return x * y * (1 + z)
+    """Floor area and height: what is placed first. Rugs come last, when it is known what stands on them."""
+    kind = kind_of(planned.noun)
+    x, y, z = kind.largest
+    return 0.0 if kind.flat else x * y * (1 + z)
 
 
 def _keep_openings_clear(layout: Layout) -> None:
@@ -116,7 +125,7 @@ def _keep_openings_clear(layout: Layout) -> None:
         wall = layout.room.walls[opening.wall]
         x, y = wall.at((opening.left + opening.right) / 2, depth / 2)
         width = opening.right - opening.left
-        layout.occupied.add(Solid(float(x), float(y), width, depth, opening.bottom, opening.top, wall.yaw))
+        layout.kept_clear.add(Solid(float(x), float(y), width, depth, opening.bottom, opening.top, wall.yaw))
 
 
 def _seed(rng: np.random.Generator) -> int:
@@ -146,7 +155,7 @@ def _spots_along_walls(
 
 
 def _first(layout: Layout, spots: Iterator[Solid], gap: float) -> Solid | None:
-    return next((s for s in spots if layout.fits(s, gap)), None)
+    return next((s for s in spots if layout.fits_clear(s, gap)), None)
 
 
 def _place_in_row(
@@ -194,7 +203,10 @@ def _spots_anywhere(layout: Layout, size: tuple[float, float, float], rng: np.ra
 def _place_on_floor(
     layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
 ) -> None:
-    """Large things in the open with a passage round them; small ones wherever there is a gap."""
+    """Large things in the open with a passage round them; small ones wherever there is a gap; rugs under what they name."""
+    if kind.flat:
+        _spread_rugs(layout, planned, size, rng)
+        return
     for _ in range(planned.count):
         own = size if kind.top else kind.size(rng, layout.room.dimensions[2])
         small = max(own[:2]) < 0.9 or kind.full_height
@@ -205,12 +217,29 @@ def _place_on_floor(
         else:
             spots, gap = _spots_in_the_open(layout, own, rng), PASSAGE if own[2] > TALL else WALKWAY
             if 0.6 <= own[2] <= TALL:  # a table: keep its chairs' places free as well
-                gap += 0.6
+                gap += CHAIR_SPACE
         solid = _first(layout, spots, gap)
+        if solid is None and own[2] <= TALL:
+            solid = _first(layout, _spots_in_the_open(layout, own, rng), max(gap / 2, SIDE_GAP))
         if solid is None:
             layout.miss(planned.noun, "no free floor")
         else:
             layout.put(planned, solid, _seed(rng))
+
+
+def _spread_rugs(
+    layout: Layout, planned: PlannedObject, size: tuple[float, float, float], rng: np.random.Generator
+) -> None:
+    """Centred under the named things, else under c; a rug takes nobody's place."""
+    below = [o for o in layout.objects if planned.relative_to and o.noun == planned.relative_to]
+    spots = [(o.centre[0], o.centre[1], o.yaw) for o in below] + [(*layout.centre[:2], 0.0)]
+    x, y, _ = layout.room.dimensions
+    for i in range(planned.count):
+        u, v, yaw = spots[min(i, len(spots) - 1)]
+        solid = Solid(u, v, size[0], size[1], 0.0, size[2], yaw)
+        limit = np.array([x, y]) / 2 - solid.reach - 0.05
+        u, v = np.clip([u, v], -limit, limit)
+        layout.put(planned, Solid(float(u), float(v), size[0], size[1], 0.0, size[2], yaw), _seed(rng))
 
 
 def _place_around(
@@ -224,7 +253,7 @@ def _place_around(
         for solid in _seats(anchor, size, share, rng):
             if share == 0 or left == 0:
                 break
-            if layout.fits(solid, TABLE_GAP * 0.9):
+            if layout.fits_clear(solid, TABLE_GAP * 0.9):
                 layout.put(planned, solid, _seed(rng))
                 layout.anchored[anchor.object_id] = layout.anchored.get(anchor.object_id, 0) + 1
                 share, left = share - 1, left - 1
@@ -263,7 +292,7 @@ def _place_on_surface(
             key=lambda o: sum(1 for p in layout.objects if p.support == o.object_id) / (o.size[0] * o.size[1])
         )
         for support in supports:
-            solid = _first(layout, _spots_on(support, own, rng), TABLE_GAP)
+            solid = next((s for s in _spots_on(support, own, rng) if layout.fits(s, TABLE_GAP)), None)
             if solid is not None:
                 layout.put(planned, solid, _seed(rng), support.object_id)
                 break
@@ -296,7 +325,7 @@ def _place_on_wall(
             bottom = float(np.clip(rng.normal(1.62, 0.12) - z / 2, 0.9, layout.room.dimensions[2] - z - 0.2))
             solid = next(_spots_along_walls(layout.room, x, y, bottom, z, rng))
             front = solid.shifted(0.0, FRONT_OF_PICTURE / 2, x, y + FRONT_OF_PICTURE)
-            if layout.fits(solid, PICTURE_GAP) and not layout.occupied.hits(front, 0.0):
+            if layout.fits_clear(solid, PICTURE_GAP) and not layout.occupied.hits(front, 0.0):
                 back = solid.shifted(0.0, -WALL_GAP, x, y)  # flat on the wall
                 layout.put(planned, back, _seed(rng))
                 break

@@ -22,6 +22,14 @@ VOXEL = 0.06
 PROBE_SPACING = 0.3
 GATHER_RAYS = 96
 """Rays from each probe, on a Fibonacci sphere."""
+PROBE_INSET = 0.1
+"""Metres from the walls to the outermost probes."""
+MAX_STEPS = 80
+"""Of a probe's ray."""
+NEAR_LAMP = 0.2
+"""Square metres added to the squared distance to a light: lamps are not points."""
+FAINT = 2e-4
+"""Irradiance below which a light is not asked for its shadow."""
 BOUNCES = 2
 SHADOW_START = 0.09
 """Metres along the normal at which a surfel's rays begin, clear of its own voxels."""
@@ -33,14 +41,14 @@ DAYLIGHT = np.array([0.97, 1.0, 1.05])
 LAMPLIGHT = np.array([1.0, 0.9, 0.76])
 WINDOW_RADIANCE = 5.5
 """Of the sky, in the unit in which a white lamp shade of emission 1 has radiance 1."""
-LAMP_BOOST = 9.0
+LAMP_BOOST = 5.0
 """A lamp gives this many times the light that its visible shade alone would."""
 CONTACT = ((0.10, 0.35), (0.18, 0.3), (0.32, 0.2), (0.55, 0.15))
 """Distances along the normal and weights at which the field is asked how open the place is."""
-MID_GREY = 0.24
-"""Median radiance after exposure."""
-WHITE = 3.5
-"""Radiance, after exposure, that becomes pure white."""
+MID_GREY = 0.185
+"""Median radiance after exposure, before the film curve."""
+FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.02, 1.0, 0.34, 0.16
+"""A rational curve (x^2 + toe x) / (shoulder x^2 + slope x + base): dark toe, long shoulder, 1 at infinity."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +87,11 @@ def lit_colours(surfels: Surfels, lights: Lights, dimensions: tuple[float, float
     )
     openness = _openness(surfels, field)
     glow = surfels.albedo * surfels.emission[:, None]
+    probes, voxels = Probes.traced(field, dimensions), field.index(surfels.points)
     irradiance = direct
     for _ in range(BOUNCES):
-        gathered = _gather(surfels, surfels.albedo * irradiance / np.pi, field, dimensions)
+        radiance = _voxel_radiance(surfels.albedo * irradiance / np.pi, voxels, field)
+        gathered = probes.irradiance(radiance, surfels.points, surfels.normals)
         irradiance = direct * (0.6 + 0.4 * openness[:, None]) + gathered * openness[:, None]
     return display(glow + surfels.albedo * irradiance / np.pi)
 
@@ -103,12 +113,11 @@ def distance_field(surfels: Surfels, dimensions: tuple[float, float, float]) -> 
 
 
 def display(radiance: Float) -> Float:
-    """Exposure to `MID_GREY`, an extended Reinhard curve on luminance, sRGB coding."""
+    """Exposure to `MID_GREY`, a filmic curve for each channel (bright colours pale, as on film), sRGB coding."""
     luminance = radiance @ [0.2126, 0.7152, 0.0722]
-    exposed = radiance * (MID_GREY / max(float(np.median(luminance)), 1e-9))
-    y = np.maximum(exposed @ [0.2126, 0.7152, 0.0722], 1e-9)
-    mapped = y * (1 + y / WHITE**2) / (1 + y)
-    colour = np.clip(exposed * (1.32 * mapped / y)[:, None], 0.0, 1.0)
+    x = np.maximum(radiance, 0.0) * (MID_GREY / max(float(np.median(luminance)), 1e-9))
+    toe, shoulder = x * (x + FILM_TOE), x * (FILM_SHOULDER * x + FILM_SLOPE) + FILM_BASE
+    colour = np.clip(toe / shoulder, 0.0, 1.0)
     return np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * np.maximum(colour, 1e-9) ** (1 / 2.4) - 0.055)
 
 
@@ -119,32 +128,59 @@ def _openness(surfels: Surfels, field: Field) -> Float:
         at = (surfels.points + surfels.normals * reach - field.origin) / VOXEL
         distance = ndimage.map_coordinates(field.distance, at.T, order=1, mode="nearest")
         total += weight * np.clip((distance + 0.4 * VOXEL) / reach, 0.0, 1.0)
-    return 0.15 + 0.85 * total
+    return 0.1 + 0.9 * total**1.5
 
 
-def _gather(surfels: Surfels, radiance: Float, field: Field, dimensions: tuple[float, float, float]) -> Float:
-    """Indirect irradiance (N, 3) from the surfels' own ``radiance`` (N, 3), by way of probes."""
-    voxels = field.index(surfels.points)
-    flat = np.ravel_multi_index(tuple(voxels.T), field.distance.shape)
-    size = field.distance.size
-    count = np.bincount(flat, minlength=size)
-    mean = np.stack([np.bincount(flat, radiance[:, c], size) for c in range(3)], 1) / np.maximum(count, 1)[:, None]
-    glowing = mean.astype(np.float32).reshape(*field.distance.shape, 3)
-    counts = np.maximum(2, np.ceil(np.array(dimensions) / PROBE_SPACING).astype(int))
-    low = np.array([-dimensions[0] / 2, -dimensions[1] / 2, 0.0]) + 0.1
-    step = (np.array(dimensions) - 0.2) / (counts - 1)
-    cubes, valid = _probes(counts, low, step, glowing, field.distance, field.origin, _sphere(GATHER_RAYS))
-    at = ((surfels.points + 0.12 * surfels.normals - low) / step).T  # (3, N)
-    weight = np.maximum(ndimage.map_coordinates(valid, at, order=1, mode="nearest"), 1e-3)
-    total = np.zeros((len(surfels), 3))
-    for axis in range(3):
-        facing = surfels.normals[:, axis]
-        for side, chosen in ((2 * axis, facing > 0), (2 * axis + 1, facing <= 0)):
-            where = at[:, chosen]
-            for c in range(3):
-                value = ndimage.map_coordinates(cubes[..., side, c], where, order=1, mode="nearest")
-                total[chosen, c] += facing[chosen] ** 2 * value / weight[chosen]
-    return total
+@dataclass(frozen=True, eq=False)
+class Probes:
+    """A lattice of light probes: which voxel each of their rays sees."""
+
+    counts: NDArray[np.int64]  # (3,)
+    low: Float  # (3,) the first probe, metres
+    step: Float  # (3,)
+    rays: Float  # (R, 3)
+    hits: NDArray[np.int32]  # (P, R) flat voxel index, -1 in solids
+
+    @staticmethod
+    def traced(field: Field, dimensions: tuple[float, float, float]) -> "Probes":
+        counts = np.maximum(2, np.ceil(np.array(dimensions) / PROBE_SPACING).astype(np.int64))
+        low = np.array([-dimensions[0] / 2, -dimensions[1] / 2, 0.0]) + PROBE_INSET
+        step = (np.array(dimensions) - 2 * PROBE_INSET) / (counts - 1)
+        rays = _sphere(GATHER_RAYS)
+        return Probes(counts, low, step, rays, _trace(low, step, counts, field.distance, field.origin, rays))
+
+    def irradiance(self, radiance: Float, points: Float, normals: Float) -> Float:
+        """Irradiance (N, 3) at points with normals, when the voxels have ``radiance`` (V, 3): ambient cubes, interpolated."""
+        inside = self.hits[:, 0] >= 0  # (P,)
+        seen = radiance[np.maximum(self.hits, 0)]  # (P, R, 3)
+        facing = np.maximum(np.concatenate([self.rays, -self.rays], 1), 0.0) * (4 * np.pi / len(self.rays))  # (R, 6)
+        cubes = np.einsum("prc,rs->psc", seen * inside[:, None, None], facing)  # (P, 6, 3)
+        cubes = cubes.reshape(*self.counts, 6, 3)
+        at = ((points + 0.12 * normals - self.low) / self.step).T  # (3, N)
+        known = ndimage.map_coordinates(inside.astype(float).reshape(self.counts), at, order=1, mode="nearest")
+        total = np.zeros((len(points), 3))
+        for axis in range(3):
+            for side, chosen in ((axis, normals[:, axis] > 0), (axis + 3, normals[:, axis] <= 0)):
+                share = normals[chosen, axis] ** 2 / np.maximum(known[chosen], 1e-3)
+                for c in range(3):
+                    value = ndimage.map_coordinates(cubes[..., side, c], at[:, chosen], order=1, mode="nearest")
+                    total[chosen, c] += share * value
+        return total
+
+
+def _voxel_radiance(radiance: Float, voxels: NDArray[np.intp], field: Field) -> Float:
+    """(V, 3) mean radiance of the surfels in each voxel; a voxel without any takes the mean of its neighbours that have."""
+    shape = field.distance.shape
+    flat = np.ravel_multi_index(tuple(voxels.T), shape)
+    count = np.bincount(flat, minlength=field.distance.size).astype(float).reshape(shape)
+    sums = [np.bincount(flat, radiance[:, c], field.distance.size).reshape(shape) for c in range(3)]
+    near = ndimage.uniform_filter(np.minimum(count, 1.0), 3, mode="constant")
+    result = []
+    for total in sums:
+        own = total / np.maximum(count, 1.0)
+        spread = ndimage.uniform_filter(own, 3, mode="constant") / np.maximum(near, 1e-9)
+        result.append(np.where(count > 0, own, np.where(near > 1e-6, spread, 0.0)).ravel())
+    return np.stack(result, axis=1)
 
 
 def _sphere(count: int) -> Float:
@@ -158,7 +194,7 @@ def _sphere(count: int) -> Float:
 
 @numba.njit(cache=True, nogil=True)
 def _distance_at(field: Float32, x: float, y: float, z: float) -> float:
-    """Trilinear, in voxel units of position; 0 outside."""
+    """Trilinear distance in metres at a position in voxel units; 0 outside."""
     nx, ny, nz = field.shape
     if x < 0 or y < 0 or z < 0 or x > nx - 1.001 or y > ny - 1.001 or z > nz - 1.001:
         return 0.0
@@ -172,84 +208,78 @@ def _distance_at(field: Float32, x: float, y: float, z: float) -> float:
 
 
 @numba.njit(cache=True, nogil=True)
+def _lit_share(
+    field: Float32, x: float, y: float, z: float, dx: float, dy: float, dz: float, far: float, slope: float
+) -> float:
+    """Share of a small light seen from (x, y, z), in voxel units, along the unit direction d over ``far`` metres.
+
+    ``slope`` is how fast the ray leaves the plane of its surface: the cosine to its normal.
+    """
+    share, t, scale = 1.0, 0.0, 1.0 / VOXEL
+    while t < far:
+        clear = _distance_at(field, x + dx * t * scale, y + dy * t * scale, z + dz * t * scale)
+        if clear < 0.8 * (SHADOW_START + t * slope):  # else what is near is the surface that the ray left
+            share = min(share, PENUMBRA * (clear + 0.01) / max(t, 0.25))
+        if share < 0.02:
+            return 0.0
+        t += max(clear, 0.5 * VOXEL)
+    return share
+
+
+@numba.njit(cache=True, nogil=True)
 def _direct(
     points: Float, normals: Float, lamps: Float, facings: Float, powers: Float, field: Float32, origin: Float
 ) -> Float:
     """Irradiance (N, 3) straight from the lights, with soft shadows."""
     result = np.zeros((len(points), 3))
     for n in range(len(points)):
-        p = points[n] + SHADOW_START * normals[n]
+        nx, ny, nz = normals[n, 0], normals[n, 1], normals[n, 2]
+        px, py, pz = (
+            points[n, 0] + SHADOW_START * nx,
+            points[n, 1] + SHADOW_START * ny,
+            points[n, 2] + SHADOW_START * nz,
+        )
+        x, y, z = (px - origin[0]) / VOXEL, (py - origin[1]) / VOXEL, (pz - origin[2]) / VOXEL
         for m in range(len(lamps)):
-            d = lamps[m] - p
-            far = np.sqrt((d * d).sum())
-            d = d / max(far, 1e-6)
-            cosine = (d * normals[n]).sum()
+            dx, dy, dz = lamps[m, 0] - px, lamps[m, 1] - py, lamps[m, 2] - pz
+            far = max(np.sqrt(dx * dx + dy * dy + dz * dz), 1e-6)
+            dx, dy, dz = dx / far, dy / far, dz / far
+            slope = dx * nx + dy * ny + dz * nz
+            cosine = slope
             if cosine <= 0.0:
                 continue
-            face = facings[m]
-            if face[0] != 0.0 or face[1] != 0.0 or face[2] != 0.0:
-                cosine *= max(-(d * face).sum(), 0.0)
-            strength = cosine / (far * far + 0.05)
-            if strength * powers[m].max() < 2e-4:
+            if facings[m, 0] != 0.0 or facings[m, 1] != 0.0 or facings[m, 2] != 0.0:
+                cosine *= max(-(dx * facings[m, 0] + dy * facings[m, 1] + dz * facings[m, 2]), 0.0)
+            strength = cosine / (far * far + NEAR_LAMP)
+            if strength * powers[m].max() < FAINT:
                 continue
-            share, t, end = 1.0, 0.0, far - LIGHT_RADIUS
-            while t < end:
-                q = (p + d * t - origin) / VOXEL
-                clear = _distance_at(field, q[0], q[1], q[2])
-                share = min(share, PENUMBRA * (clear + 0.01) / max(t, 0.25))
-                if share < 0.02:
-                    share = 0.0
-                    break
-                t += max(clear, 0.5 * VOXEL)
-            result[n] += share * strength * powers[m]
+            strength *= _lit_share(field, x, y, z, dx, dy, dz, far - LIGHT_RADIUS, slope)
+            for c in range(3):
+                result[n, c] += strength * powers[m, c]
     return result
 
 
 @numba.njit(cache=True, nogil=True)
-def _probes(
-    counts: NDArray[np.int64], low: Float, step: Float, glowing: Float32, field: Float32, origin: Float, rays: Float
-) -> tuple[Float32, Float32]:
-    """Ambient cubes (PX, PY, PZ, 6, 3) of irradiance along +x, -x, +y, -y, +z, -z; zero, and validity 0, inside of solids."""
-    cubes = np.zeros((counts[0], counts[1], counts[2], 6, 3), np.float32)
-    valid = np.zeros((counts[0], counts[1], counts[2]), np.float32)
-    area = 4 * np.pi / len(rays)
-    for i in range(counts[0]):
-        for j in range(counts[1]):
-            for k in range(counts[2]):
-                p = (low + step * np.array([i, j, k]) - origin) / VOXEL
-                if _distance_at(field, p[0], p[1], p[2]) < 0.5 * VOXEL:
-                    continue
-                valid[i, j, k] = 1.0
-                for r in range(len(rays)):
-                    d = rays[r]
-                    t = 0.0
-                    q = p.copy()
-                    for _ in range(80):
-                        clear = _distance_at(field, q[0], q[1], q[2])
-                        if clear < 0.35 * VOXEL:
-                            break
-                        t += max(clear / VOXEL, 0.5)
-                        q = p + d * t
-                    light = _radiance_near(glowing, q)
-                    for axis in range(3):
-                        side = 2 * axis if d[axis] > 0 else 2 * axis + 1
-                        for c in range(3):
-                            cubes[i, j, k, side, c] += light[c] * abs(d[axis]) * area
-    return cubes, valid
-
-
-@numba.njit(cache=True, nogil=True)
-def _radiance_near(glowing: Float32, q: Float) -> Float:
-    """Mean radiance (3,) of the voxels that have any, in the 3x3x3 round a position in voxel units."""
-    nx, ny, nz, _ = glowing.shape
-    total = np.zeros(3)
-    found = 0
-    x, y, z = int(np.rint(q[0])), int(np.rint(q[1])), int(np.rint(q[2]))
-    for i in range(max(x - 1, 0), min(x + 2, nx)):
-        for j in range(max(y - 1, 0), min(y + 2, ny)):
-            for k in range(max(z - 1, 0), min(z + 2, nz)):
-                v = glowing[i, j, k]
-                if v[0] + v[1] + v[2] > 0:
-                    found += 1
-                    total += v
-    return total / max(found, 1)
+def _trace(
+    low: Float, step: Float, counts: NDArray[np.int64], field: Float32, origin: Float, rays: Float
+) -> NDArray[np.int32]:
+    """(P, R) flat index of the voxel that each probe's ray ends in; -1 throughout for a probe inside of something."""
+    _, ny, nz = field.shape
+    hits = np.full((counts[0] * counts[1] * counts[2], len(rays)), -1, np.int32)
+    for probe in range(len(hits)):
+        i, j, k = probe // (counts[1] * counts[2]), (probe // counts[2]) % counts[1], probe % counts[2]
+        px = (low[0] + step[0] * i - origin[0]) / VOXEL
+        py = (low[1] + step[1] * j - origin[1]) / VOXEL
+        pz = (low[2] + step[2] * k - origin[2]) / VOXEL
+        if _distance_at(field, px, py, pz) < 0.5 * VOXEL:
+            continue
+        for r in range(len(rays)):
+            x, y, z = px, py, pz
+            for _ in range(MAX_STEPS):
+                clear = _distance_at(field, x, y, z)
+                if clear < 0.35 * VOXEL:
+                    break
+                stride = max(clear / VOXEL, 0.5)
+                x, y, z = x + rays[r, 0] * stride, y + rays[r, 1] * stride, z + rays[r, 2] * stride
+            hits[probe, r] = (int(np.rint(x)) * ny + int(np.rint(y))) * nz + int(np.rint(z))
+    return hits

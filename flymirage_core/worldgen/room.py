@@ -15,6 +15,7 @@ from flymirage_core.worldgen.surfaces import Part, Sheet, upright
 SILL, LINTEL = 0.95, 2.25
 DOOR_WIDTH, DOOR_HEIGHT = 1.0, 2.1
 SKIRTING = 0.09
+DOOR_COLOURS = ("walnut brown", "chalk", "oak brown", "slate grey", "honey brown")
 FLOORS = {
     "plank": Material((1, 1, 1), "planks", joints=(0.0, 0.16, 0.012), stretch=3.0, detail=1.15),
     "tile": Material((1, 1, 1), "tiles", joints=(0.5, 0.5, 0.012), detail=1.5),
@@ -115,7 +116,7 @@ def shell(room: Room, description: SceneDescription) -> list[Part]:
     for window in room.windows:
         parts += _window(room.walls[window.wall], window, seed)
     for door in room.doors:
-        parts += _door(room.walls[door.wall], door, palette[2 % len(palette)])
+        parts += _door(room.walls[door.wall], door, DOOR_COLOURS[seed % len(DOOR_COLOURS)])
     return parts
 
 

@@ -14,11 +14,11 @@ from flymirage_core.worldgen.room import Room, shell
 from flymirage_core.worldgen.surfaces import Part, Surfels, surfels_of, upright
 from flymirage_core.worldgen.truth import PlacedObject, WorldTruth
 
-OVERLAP = 0.68
-"""A splat's standard deviation as a share of its surfel's side: neighbours overlap to an alpha of 0.98 at the corners."""
+OVERLAP = 0.72
+"""A splat's standard deviation as a share of its surfel's side: neighbours overlap to an alpha of 0.99 at the corners."""
 THICKNESS = 0.002
 """Standard deviation along the normal, metres."""
-OPACITY = 0.985
+OPACITY = 0.99
 SH_C0 = 0.28209479177387814
 """Real spherical harmonic of degree 0: colour = 0.5 + SH_C0 * coefficient."""
 FIRST_SPACING = 0.07
@@ -29,7 +29,7 @@ FINEST = 0.45
 HIDDEN = 0.05
 """Metres: faces this close to the wall or floor they look at cannot be seen."""
 SECOND = {"wood": "walnut brown", "metal": "charcoal", "fabric": "chocolate", "plain": "charcoal", "stone": "charcoal"}
-LAMP_POWER = 0.02
+LAMP_POWER = 0.05
 """Objects that glow less (emission times square metres) light nothing: screens, small signs."""
 
 
@@ -43,7 +43,7 @@ def gaussians(description: SceneDescription, room: Room, truth: WorldTruth, coun
         spacing *= float(np.sqrt(found / count))
     pieces = _cut(structure, objects, spacing)
     lights = _lights(room, pieces[1:])
-    pieces[0] = pieces[0][_uncovered(pieces[0], room)]
+    pieces[0] = pieces[0][_uncovered(pieces[0], room, truth)]
     surfels = Surfels.joined(pieces)
     return splats(surfels, lit_colours(surfels, lights, room.dimensions))
 
@@ -99,8 +99,8 @@ def _hidden(own: Surfels, placed: PlacedObject) -> NDArray[np.bool_]:
     return hidden
 
 
-def _uncovered(structure: Surfels, room: Room) -> NDArray[np.bool_]:
-    """(N,) False for the wall behind windows and doors: nearly coplanar splats would shine through each other."""
+def _uncovered(structure: Surfels, room: Room, truth: WorldTruth) -> NDArray[np.bool_]:
+    """(N,) False for wall behind windows and doors and floor under rugs: coplanar splats would shine through each other."""
     seen = np.ones(len(structure), bool)
     for opening in (*room.windows, *room.doors):
         wall = room.walls[opening.wall]
@@ -110,6 +110,10 @@ def _uncovered(structure: Surfels, room: Room) -> NDArray[np.bool_]:
         seen &= ~(
             behind & (height > opening.bottom + (0.04 if opening.bottom else -1.0)) & (height < opening.top - 0.04)
         )
+    for rug in (o for o in truth.objects if kind_of(o.noun).flat):
+        local = (structure.points[:, :2] - rug.centre[:2]) @ rug.axes.T
+        below = (np.abs(local) < np.array(rug.size[:2]) / 2 - 0.04).all(axis=1)
+        seen &= ~(below & (structure.points[:, 2] < 1e-3))
     return seen
 
 
@@ -128,7 +132,7 @@ def _lights(room: Room, objects: list[Surfels]) -> Lights:
     for own in objects:
         area = np.linalg.norm(own.along, axis=1) * np.linalg.norm(own.across, axis=1)
         glow = own.emission * area
-        if glow.sum() > LAMP_POWER and own.emission.max() > 1.55:
+        if glow.sum() > LAMP_POWER:
             middle = (own.points * glow[:, None]).sum(axis=0) / glow.sum()
             positions.append(list(middle - [0.0, 0.0, 0.08]))
             normals.append([0.0, 0.0, 0.0])

@@ -1,5 +1,7 @@
 """Lamps, plants, vessels, electronics, and what hangs on walls and ceilings. Every builder fills its size; +y is the front."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from flymirage_core.worldgen.materials import Material
@@ -15,9 +17,9 @@ from flymirage_core.worldgen.parts import (
     tube,
     turned,
 )
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Part, Sheet, Vector
 
-GLOW = 1.6
+GLOW = 0.9
 """Emission of a lampshade."""
 LEAF_GREENS = ("forest green", "green", "moss green", "olive")
 
@@ -49,7 +51,7 @@ def pendant_lamp(size: Vector, f: Finish) -> list[Part]:
     x, _, z = size
     r, shade = x / 2, min(0.3, z * 0.5)
     dome = turned(f.main, smooth([(r, 0.0), (r * 0.9, shade * 0.45), (r * 0.35, shade * 0.85), (0.0, shade)], 10))
-    bulb = turned(paint("cream", emission=3.5), [(0, 0.01), (r * 0.95, 0.012)])
+    bulb = turned(paint("cream", emission=2.0), [(0, 0.01), (r * 0.95, 0.012)])
     return [
         dome,
         bulb,
@@ -60,7 +62,7 @@ def pendant_lamp(size: Vector, f: Finish) -> list[Part]:
 
 def ceiling_panel(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    glow = turned(paint("white", emission=3.0), [(0, 0), (0.5, 0)], (0, 0, 0), (x * 0.9, y * 0.9))
+    glow = turned(paint("white", emission=1.6), [(0, 0), (0.5, 0)], (0, 0, 0), (x * 0.9, y * 0.9))
     return [box(f.second, (x, y, z - 0.005), (0, 0, 0.005)), glow]
 
 
@@ -181,7 +183,7 @@ def _facing(part: Part, offset: Vector) -> Part:
 
 def monitor(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    screen = Material((0.5, 0.5, 0.5), "screen", emission=1.5, detail=0.6, seed=f.seed)
+    screen = Material((0.5, 0.5, 0.5), "screen", emission=0.6, detail=0.75, seed=f.seed)
     panel = box(f.second, (x, 0.04, z * 0.78), (0, 0, z * 0.22), 0.008)
     stand = [box(f.second, (x * 0.4, y, 0.02)), box(f.second, (0.06, 0.04, z * 0.3), (0, -0.03, 0.02))]
     return [panel, picture(screen, x - 0.03, z * 0.78 - 0.03, (0, 0.024, z * 0.22 + 0.015)), *stand]
@@ -189,7 +191,7 @@ def monitor(size: Vector, f: Finish) -> list[Part]:
 
 def laptop(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    screen = Material((0.5, 0.5, 0.5), "screen", emission=1.5, detail=0.5, seed=f.seed)
+    screen = Material((0.5, 0.5, 0.5), "screen", emission=0.6, detail=0.5, seed=f.seed)
     return [
         box(f.main, (x, y, 0.02)),
         box(paint("charcoal"), (x - 0.05, y * 0.5, 0.004), (0, 0.0, 0.02)),
@@ -266,7 +268,7 @@ def sculpture(size: Vector, f: Finish) -> list[Part]:
 
 def painting(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    canvas = Material((0.5, 0.5, 0.5), "painting", detail=0.6, seed=f.seed)
+    canvas = Material((0.5, 0.5, 0.5), "painting", detail=0.75, seed=f.seed)
     return [
         *_frame(f.main, x, y, z),
         box(paint("chalk"), (x - 0.05, 0.01, z - 0.05), (0, 0, 0.025)),
@@ -276,7 +278,7 @@ def painting(size: Vector, f: Finish) -> list[Part]:
 
 def poster(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    sheet = Material((0.5, 0.5, 0.5), "painting", detail=0.6, seed=f.seed)
+    sheet = Material((0.5, 0.5, 0.5), "painting", detail=0.75, seed=f.seed)
     return [
         box(paint("white"), (x, y, z)),
         picture(sheet, x - 0.04, z - 0.2, (0, y / 2 + 0.003, 0.17)),
@@ -286,7 +288,7 @@ def poster(size: Vector, f: Finish) -> list[Part]:
 
 def notice_board(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    cork = Material((0.5, 0.5, 0.5), "notes", detail=0.6, seed=f.seed)
+    cork = Material((0.5, 0.5, 0.5), "notes", detail=0.75, seed=f.seed)
     return [*_frame(f.main, x, y, z), picture(cork, x - 0.06, z - 0.06, (0, 0.0, 0.03))]
 
 
@@ -349,6 +351,12 @@ def hanging_plant(size: Vector, f: Finish) -> list[Part]:
         for p in tube(f.second, [(x * 0.28 * np.cos(a), x * 0.28 * np.sin(a), bottom + 0.24), (0, 0, z)], 0.006)
     ]
     return [pot, leaves, *cords]
+
+
+def rug(size: Vector, f: Finish) -> list[Part]:
+    x, y, z = size
+    weave = replace(f.main, texture="rug", stretch=1.0, detail=0.7)
+    return [Part(Sheet((-x / 2, -y / 2, z), (x, 0.0, 0.0), (0.0, y, 0.0)), weave)]
 
 
 def coat_rack(size: Vector, f: Finish) -> list[Part]:

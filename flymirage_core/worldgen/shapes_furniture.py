@@ -346,7 +346,7 @@ def vending_machine(size: Vector, f: Finish) -> list[Part]:
             )
     parts.append(
         picture(
-            Material((0.5, 0.5, 0.5), "screen", emission=1.2, detail=0.6, seed=f.seed),
+            Material((0.5, 0.5, 0.5), "screen", emission=0.6, detail=0.6, seed=f.seed),
             x * 0.16,
             0.2,
             (x * 0.36, y / 2 - 0.015, z * 0.6),

@@ -106,7 +106,7 @@ def machine(size: Vector, f: Finish) -> list[Part]:
     console = box(f.second, (x * 0.3, y * 0.3, z * 0.25), (x * 0.3, y * 0.2, z * 0.55 + 0.06), 0.02)
     wheel = [turned(f.second, [(0, 0), (0.13, 0), (0.13, 0.05), (0, 0.05)], (x * 0.3, -y * 0.25, z * 0.55 + 0.06))]
     lights = [
-        cylinder(paint(c, emission=0.8), 0.025, 0.015, (x * (0.24 + 0.06 * i), y * 0.2, z * 0.8 + 0.06))
+        cylinder(paint(c, emission=0.6), 0.025, 0.015, (x * (0.24 + 0.06 * i), y * 0.2, z * 0.8 + 0.06))
         for i, c in enumerate(("red", "yellow", "green"))
     ]
     grill = [
@@ -240,7 +240,7 @@ def standing_sign(size: Vector, f: Finish) -> list[Part]:
 def kiosk(size: Vector, f: Finish) -> list[Part]:
     """A ticket or information machine: a leaning screen on a pedestal."""
     x, y, z = size
-    screen = Material((0.5, 0.5, 0.5), "screen", emission=1.6, detail=0.6, seed=f.seed)
+    screen = Material((0.5, 0.5, 0.5), "screen", emission=0.5, detail=0.6, seed=f.seed)
     body = box(f.main, (x, y - 0.03, z), (0, -0.015, 0), 0.03)
     band = box(f.second, (x - 0.02, 0.02, z * 0.12), (0, y / 2 - 0.025, z * 0.86), 0.005)
     slot = box(paint("charcoal"), (x * 0.6, 0.02, 0.08), (0, y / 2 - 0.02, z * 0.35))
@@ -262,7 +262,7 @@ def turnstile(size: Vector, f: Finish) -> list[Part]:
             0.02,
         )
     ]
-    return [body, *arms, box(paint("green", emission=0.8), (x * 0.2, 0.06, 0.01), (-x * 0.27, y * 0.3, z))]
+    return [body, *arms, box(paint("green", emission=0.6), (x * 0.2, 0.06, 0.01), (-x * 0.27, y * 0.3, z))]
 
 
 def trolley(size: Vector, f: Finish) -> list[Part]:
