@@ -46,7 +46,7 @@ LANES = 16
 """Width of a tile in pixels, and of the vectors that LLVM makes of a row of it."""
 TILE_HEIGHT = 32
 """Height of a tile in pixels."""
-BATCH = 32
+BATCH = 64
 """Gaussians that a tile looks at before it composites them; after each batch it drops its finished rows."""
 
 # One visible Gaussian is one record of 16 floats, a cache line. Exponents are log2(alpha) / 8, see `_composite_row`:
