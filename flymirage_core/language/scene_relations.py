@@ -36,6 +36,8 @@ DEPTH_STEP = (0.4, 0.1)
 """Metres by which a thing must be nearer (or farther) than its landmark to be in front of (or behind) it."""
 NEIGHBOURHOOD = (2.0, 3.5)
 """Metres between centres beyond which nobody relates two things by view."""
+LEAST_RANGE = 0.3
+"""Metres, horizontally, from the drone within which a thing has no side."""
 SIDE_ANGLE = (np.radians(20.0), np.radians(8.0))
 SIDE_ANGLE_MOST = (np.radians(145.0), np.radians(170.0))
 AHEAD_ANGLE = (np.radians(15.0), np.radians(28.0))
@@ -172,7 +174,9 @@ def between(thing: ObjectBox, one: ObjectBox, other: ObjectBox) -> Truth:
 
 
 def on_side(side: Side, thing: ObjectBox, start: StartPose) -> Truth:
-    """Whether the drone at its start, looking ahead, has the thing on this side."""
+    """Whether the drone at its start, looking ahead, has the thing on this side; one below or above may be on any."""
+    if start.range(thing) < LEAST_RANGE:
+        return Truth.MAYBE
     bearing = start.bearing(thing)
     match side:
         case Side.LEFT:

@@ -16,6 +16,7 @@ from flymirage_core.language.referring import (
     Most,
     Noun,
     Related,
+    Shape,
     Shaped,
     Superlative,
 )
@@ -81,9 +82,9 @@ def sentence(kind: PromptKind, meaning: Meaning, landmarks: Landmarks, generator
 
 def definite(meaning: Meaning, landmarks: Landmarks) -> str:
     """
-    >>> chair = Meaning((Noun("chair"), Colour("dark green"), Located(Side.LEFT)))
+    >>> chair = Meaning((Shaped(Shape.TALL), Colour("dark green"), Noun("chair")))
     >>> definite(chair, Landmarks(frozenset()))
-    'the dark green chair on your left'
+    'the tall dark green chair'
     """
     return f"the {_core(meaning)}{_place(meaning, landmarks)}"
 

@@ -18,8 +18,9 @@ from lerobot_doctor.dataset_loader import load_local
 from lerobot_doctor.runner import Severity, run_checks
 
 from flymirage_core.dataset import lerobot, lerobot_files, video_join
+from flymirage_core.dataset.column_stats import PictureCounts
 from flymirage_core.dataset.episodes import SceneProducts
-from flymirage_core.dataset.flight_columns import into_yaw_frame, poses_from_actions
+from flymirage_core.dataset.flight_columns import flight_columns, into_yaw_frame, poses_from_actions
 from flymirage_core.dataset.lerobot import DepthExport, ExportReport, export_lerobot
 from flymirage_core.dataset.lerobot_schema import DEPTH_KEY, RGB_KEY
 from flymirage_core.dataset.reader import LeRobotFolder
@@ -74,6 +75,7 @@ def test_timestamps_are_whole_frames_within_episodes_and_within_the_video(export
         assert times["timestamp"].dtype == np.float32
         np.testing.assert_array_equal(times["timestamp"], (np.arange(episode.length) / 10).astype(np.float32))
         np.testing.assert_array_equal(times["index"], np.arange(first, first + episode.length))
+        assert (row["dataset_from_index"], row["dataset_to_index"]) == (first, first + episode.length)
         assert row[f"videos/{RGB_KEY}/from_timestamp"] == first / 10
         assert row[f"videos/{RGB_KEY}/to_timestamp"] == (first + episode.length) / 10
         first += episode.length
@@ -101,6 +103,18 @@ def test_lerobot_doctor_finds_nothing_broken(report: ExportReport) -> None:
     broken = [m.message for r in findings.results for m in r.messages if m.severity is Severity.FAIL]
     assert broken == []
     assert findings.summary_counts["PASS"] >= 6
+
+
+def test_a_target_ahead_is_in_the_picture_and_one_behind_is_not(cafe: SceneProducts) -> None:
+    flight, frames = cafe.trajectories.flights[0], cafe.frames.flight(0)
+    red, blue = (flight_columns(flight, frames, cafe.boxes.by_id(i))["sim.target_in_picture"] for i in (0, 1))
+    assert red.all() and not blue.any()
+
+
+def test_missing_depth_does_not_count_into_the_depth_statistics() -> None:
+    depth = np.array([[0, 1000], [3000, 0]], np.uint16)
+    stats = PictureCounts.of_depth(depth).stats()
+    assert (stats["min"], stats["mean"], stats["max"]) == ([[[1000.0]]], [[[2000.0]]], [[[3000.0]]])
 
 
 def test_only_state_and_action_carry_the_prefixes_that_lerobot_takes_for_them(export: LeRobotFolder) -> None:

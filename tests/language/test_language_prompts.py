@@ -25,7 +25,7 @@ from flymirage_core.language.referring import (
     picks,
     resolve,
 )
-from flymirage_core.language.scene_relations import Relation, Side, StartPose, Truth, next_to, on, under
+from flymirage_core.language.scene_relations import Relation, Side, StartPose, Truth, next_to, on, related, under
 from flymirage_core.language.verdicts import QualityVerdicts, Verdict
 from flymirage_core.language.wording import Landmarks, definite, indefinite
 from flymirage_core.navigation.trajectories import Trajectories
@@ -109,6 +109,28 @@ class TestReadingBack:
         assert picks(closest, (*chairs, one), EAST, 0)
         assert not picks(closest, (*chairs, one, other), EAST, 0)
 
+    def test_in_front_and_behind_go_by_depth_along_one_line_of_sight(self) -> None:
+        stool, sofa = box(0, "stool", (2, 0, 0.2)), box(1, "sofa", (3.5, 0.1, 0.4))
+        behind_it = StartPose((5.5, 0.0, 1.2), np.pi)
+        assert related(Relation.IN_FRONT_OF, stool, sofa, EAST) is Truth.YES
+        assert related(Relation.BEHIND, stool, sofa, EAST) is Truth.NO
+        assert related(Relation.BEHIND, stool, sofa, behind_it) is Truth.YES
+
+    def test_left_and_right_of_a_landmark_are_seen_from_the_start(self) -> None:
+        plant, sofa = box(0, "plant", (3, 1.2, 0.5)), box(1, "sofa", (3, 0, 0.4))
+        from_the_other_side = StartPose((6.0, 0.0, 1.2), np.pi)
+        assert related(Relation.LEFT_OF, plant, sofa, EAST) is Truth.YES
+        assert related(Relation.RIGHT_OF, plant, sofa, EAST) is Truth.NO
+        assert related(Relation.RIGHT_OF, plant, sofa, from_the_other_side) is Truth.YES
+
+    def test_a_picture_hangs_above_the_sofa_before_its_wall_and_is_not_on_it(self) -> None:
+        sofa, picture = box(0, "sofa", (0, 0, 0.4), (2, 0.9, 0.8)), box(1, "picture", (0.2, 0.6, 1.7), (0.8, 0.05, 0.6))
+        assert related(Relation.ABOVE, picture, sofa, EAST) is Truth.YES
+        assert related(Relation.BELOW, sofa, picture, EAST) is Truth.YES
+        assert on(picture, sofa) is Truth.NO
+        beside = box(2, "picture", (0.2, 0.6, 0.5), (0.8, 0.05, 0.6))
+        assert related(Relation.ABOVE, beside, sofa, EAST) is Truth.NO
+
 
 class TestRefusal:
     def test_twins_side_by_side_get_no_prompt_at_all(self) -> None:
@@ -178,11 +200,14 @@ def test_a_twin_in_the_targets_place_silences_everything(things, yaw) -> None:
 
 
 @settings(max_examples=40, deadline=None)
-@given(things, st.floats(-3, 3), st.floats(-3, 3))
-def test_turning_room_and_drone_together_changes_no_word(things, yaw, turn) -> None:
-    rounded = [(label, (round(x, 1), round(y, 1)), colour, round(h, 1)) for label, (x, y), colour, h in things]
-    kinds_said = [kind for kind, _ in said(room_of(rounded), yaw)]
-    assert [kind for kind, _ in said(room_of(rounded, turn), yaw + turn)] == kinds_said
+@given(st.integers(0, 2**32 - 1))
+def test_turning_room_and_drone_together_changes_no_word(seed) -> None:
+    """Places are drawn evenly, not by hypothesis, which likes exact ties: there a rounding error decides."""
+    g = np.random.default_rng(seed)
+    nouns = ["chair", "office chair", "table", "lamp", "object", "bookshelf"]
+    things = [(str(g.choice(nouns)), g.uniform(-4, 4, 2), "red", g.uniform(0.2, 2)) for _ in range(8)]
+    yaw, turn = g.uniform(-3, 3, 2)
+    assert said(room_of(things, turn), yaw + turn) == said(room_of(things), yaw)
 
 
 class TestWording:
