@@ -148,7 +148,8 @@ def rasterize(table: SplatTable, camera: Camera, scratch: Scratch) -> FloatPictu
     shape = (k.height, k.width)
     picture = FloatPicture(np.empty((*shape, 3), np.float32), np.empty(shape, np.float32), np.empty(shape, np.float32))
     rotation = camera.T_camera_world[:3, :3].ravel()
-    packed = np.concatenate([rotation, camera.position, [k.fx, k.fy, k.cx, k.cy]]).astype(np.float64)  # (16,)
+    pinhole = [k.fx, k.fy, k.cx, k.cy, k.width, k.height]
+    packed = np.concatenate([rotation, camera.position, pinhole]).astype(np.float64)  # (18,)
     kernels.render_frame(
         table.arrays(), packed, scratch.records, scratch.ids, picture.rgb, picture.depth, picture.alpha
     )

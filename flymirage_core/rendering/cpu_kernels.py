@@ -99,12 +99,12 @@ def render_frame(
 ) -> None:
     """Fill ``rgb`` (H, W, 3), expected ``depth`` (H, W) in metres and ``alpha`` (H, W) with one frame, on black.
 
-    ``splats`` are the arrays of `cpu.SplatTable`; ``camera`` (16,) is R_camera_world by rows, the eye's position, fx,
-    fy, cx, cy. ``records`` (N, 16) and ``ids`` (N,) are scratch, for one thread at a time.
+    ``splats`` are the arrays of `cpu.SplatTable`; ``camera`` (18,) is R_camera_world by rows, the eye's position, fx,
+    fy, cx, cy, width, height. ``records`` (N, 16) and ``ids`` (N,) are scratch, for one thread at a time.
     """
     means, axes, opacities, file_indices, blocks, sh = splats
     height, width = alpha.shape
-    count = _project(means, axes, opacities, sh, blocks, camera, width, height, records, ids)
+    count = _project(means, axes, opacities, sh, blocks, camera, records, ids)
     order = _depth_order(records, ids, file_indices, count)
     starts, lists = _bin(records, order, width, height)
     _blend(records, starts, lists, rgb, depth, alpha)
@@ -118,19 +118,17 @@ def _project(
     sh: Float32,
     blocks: Float32,
     camera: Float64,
-    width: int,
-    height: int,
     records: Float32,
     ids: UInt32,
 ) -> int:
     """Write the record and the index of every Gaussian whose ellipse meets the image; return how many."""
     count = 0
     for block in range(len(blocks)):
-        if not _block_in_view(blocks[block], camera, F(width), F(height)):
+        if not _block_in_view(blocks[block], camera):
             continue
         first = block * BLOCK
         last = min(first + BLOCK, means.shape[1])
-        found, keep = _project_block(means, axes, opacities, first, last, camera, F(width), F(height))
+        found, keep = _project_block(means, axes, opacities, first, last, camera)
         before = count
         for i in range(last - first):
             if keep[i]:
@@ -147,7 +145,7 @@ def _project(
 
 
 @njit(**FAST)
-def _block_in_view(block: Float32, camera: Float64, width: np.float32, height: np.float32) -> bool:
+def _block_in_view(block: Float32, camera: Float64) -> bool:
     """Can the block (centre, radius round all its Gaussians' ellipsoids) reach the image? Never wrongly False.
 
     A Gaussian of radius r is as wide as r sqrt(1 + t^2) in the image at distance one, t being where the projection is
@@ -160,7 +158,7 @@ def _block_in_view(block: Float32, camera: Float64, width: np.float32, height: n
     radius = block[3]
     if z + radius < F(NEAR) or z - radius > F(FAR):
         return False
-    fx, fy, cx, cy = F(camera[12]), F(camera[13]), F(camera[14]), F(camera[15])
+    fx, fy, cx, cy, width, height = _pinhole(camera)
     left, right = (cx + BLUR_REACH) / fx, (width - cx + BLUR_REACH) / fx
     above, below = (cy + BLUR_REACH) / fy, (height - cy + BLUR_REACH) / fy
     margin_x, margin_y = F(FRUSTUM_MARGIN) * width / fx, F(FRUSTUM_MARGIN) * height / fy
@@ -174,15 +172,14 @@ def _block_in_view(block: Float32, camera: Float64, width: np.float32, height: n
 
 
 @njit(**FAST)
+def _pinhole(camera: Float64) -> tuple[np.float32, np.float32, np.float32, np.float32, np.float32, np.float32]:
+    """fx, fy, cx, cy, width, height in pixels."""
+    return F(camera[12]), F(camera[13]), F(camera[14]), F(camera[15]), F(camera[16]), F(camera[17])
+
+
+@njit(**FAST)
 def _project_block(
-    means: Float32,
-    axes: Float32,
-    opacities: Float32,
-    first: int,
-    last: int,
-    camera: Float64,
-    w: np.float32,
-    h: np.float32,
+    means: Float32, axes: Float32, opacities: Float32, first: int, last: int, camera: Float64
 ) -> tuple[Float32, NDArray[np.uint8]]:
     """EWA splatting of up to 256 Gaussians: their records by columns (12, 256), and which of them meet the image.
 
@@ -191,7 +188,7 @@ def _project_block(
     """
     R0, R1, R2, R3, R4, R5, R6, R7, R8, e0, e1, e2 = camera[:12]
     r0, r1, r2, r3, r4, r5, r6, r7, r8 = F(R0), F(R1), F(R2), F(R3), F(R4), F(R5), F(R6), F(R7), F(R8)
-    fx, fy, cx, cy = F(camera[12]), F(camera[13]), F(camera[14]), F(camera[15])
+    fx, fy, cx, cy, w, h = _pinhole(camera)
     margin_x, margin_y = F(FRUSTUM_MARGIN) * w / fx, F(FRUSTUM_MARGIN) * h / fy
     left, right, above, below = (
         -cx / fx - margin_x,
