@@ -16,7 +16,6 @@ from flymirage_core.language.referring import (
     Most,
     Noun,
     Related,
-    Shape,
     Shaped,
     Superlative,
 )
@@ -82,9 +81,9 @@ def sentence(kind: PromptKind, meaning: Meaning, landmarks: Landmarks, generator
 
 def definite(meaning: Meaning, landmarks: Landmarks) -> str:
     """
-    >>> chair = Meaning((Shaped(Shape.TALL), Colour("dark green"), Noun("chair")))
+    >>> chair = Meaning((Most(Superlative.TALLEST), Colour("dark green"), Noun("chair")))
     >>> definite(chair, Landmarks(frozenset()))
-    'the tall dark green chair'
+    'the tallest dark green chair'
     """
     return f"the {_core(meaning)}{_place(meaning, landmarks)}"
 
