@@ -251,7 +251,7 @@ def _surface_point(
         for k in range(3):
             out[k] = inner[k] + at * v[k]
         if is_blocked(voxels, out):
-            at = min(at + voxels.resolution, length)
+            at += voxels.resolution
             break
         if at < voxels.resolution:
             break
