@@ -4,7 +4,7 @@
 
 Worlds: the room that is given (arrays grid, origin, resolution, starts, goals), a corridor with pillars, a forest of
 cylinders and a flat of four rooms, 20 pairs each, at 1, 2 and 3 voxels of inflation. Times are CPU milliseconds on one
-core, seed path included, after compilation; preparing a world for its flights is timed apart.
+core, seed path included, after compilation; making a world's `FlightSpace` is not in them, it is made once per scene.
 """
 
 import sys
@@ -28,7 +28,7 @@ PAIRS = 20
 END_CLEARANCE = 0.3
 ORIGINAL = """The original (C++, 2 m/s and 3 m/s^2 per axis, replanning on the way; worlds like these):
   at 1 voxel : within 0.1 m of the goal: room 20/20, corridor 17/20, forest 15/20, flat 14/20; 0 collisions
-  at 2 voxels: room 17/20, corridor 19/20, forest 16/20, flat 14/20; at 3 voxels: 39/68 of what is connected
+  at 2 voxels: room 17/20, corridor 19/20, forest 16/20, flat 14/20; at 3 voxels: 45/68 of what is connected
   at 1 voxel : length ratio median 1.057, speed norm max 2.99 m/s, acceleration norm max 6.44 m/s^2,
                clearance median 0.205 m, min 0.113 m; goal missed by 0.027 m (median), 0.163 m (max);
                position jumps at a replan by up to 0.114 m; 0.12 / 1.15 ms a call (median / p95), 12 calls a flight"""
