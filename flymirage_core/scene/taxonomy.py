@@ -1,4 +1,4 @@
-"""The hierarchy of scene types, and the two-step pick of paper section III-A: first a category, then a subcategory in it."""
+"""The hierarchy of scene types, and the two-step pick of paper section III-A: a category, then a subcategory in it."""
 
 import json
 from collections.abc import Mapping
@@ -55,8 +55,8 @@ def load_taxonomy(path: Path) -> Taxonomy:
         return _parse(path.read_text())
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise InputError(
-            f"taxonomy {path} cannot be read ({error!r}); expected JSON with a version and categories that each have a name "
-            "and a list of subcategories"
+            f"taxonomy {path} cannot be read ({error!r}); expected JSON with a version and categories that each have "
+            "a name and a list of subcategories"
         ) from error
 
 

@@ -1,4 +1,4 @@
-"""Who writes scene descriptions: the port that an LLM fills, and its offline twin, which composes them from furnishing data."""
+"""Who writes scene descriptions: the port that an LLM fills, and its offline twin, which composes them from data."""
 
 import json
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from flymirage_core.scene.taxonomy import Taxonomy, standard_taxonomy
 
 NAME = "offline 1"
 OBJECTS_WANTED = (88, 98)
-"""How many objects a description asks for; the paper's scenes have 60 to 100, and not all of them can be found again."""
+"""How many objects a description asks for; the paper's scenes have 60 to 100, and not all can be found again."""
 SIZE_RANGE = ((9.6, 12.0), (8.4, 10.0), (2.9, 3.5))
 """Metres: length, width and height of rooms."""
 WALL_SHARE = 0.2

@@ -1,12 +1,16 @@
 """Colour names to linear RGB: the words of a description as the paint of a world. Muted, as real rooms are."""
 
 import hashlib
+from typing import Final
 
+MUTED: Final = 0.14
+"""Share of grey in every colour: paint and cloth are never as pure as a screen, and the film curve adds some."""
 NAMED = {
     "white": "#e9e6df", "ivory": "#e8dfc9", "cream": "#e6d9bd", "chalk": "#dcdad3", "beige": "#cdbb9c",
     "sand": "#c6ad84", "taupe": "#94867a", "light grey": "#bfbfbb", "grey": "#8e908f", "slate grey": "#5d666d",
-    "charcoal": "#3f4347", "black": "#2b2b2d", "honey brown": "#b3834f", "oak brown": "#a57c50", "walnut brown": "#6b4a33",
-    "chestnut": "#7c4a33", "chocolate": "#4f3528", "tan": "#b58b5f", "caramel": "#b0703a", "rust": "#a2542f",
+    "charcoal": "#3f4347", "black": "#2b2b2d", "honey brown": "#b3834f", "oak brown": "#a57c50",
+    "walnut brown": "#6b4a33", "chestnut": "#7c4a33", "chocolate": "#4f3528",
+    "tan": "#b58b5f", "caramel": "#b0703a", "rust": "#a2542f",
     "terracotta": "#b8684a", "brick red": "#8f3f35", "red": "#a8322d", "burgundy": "#6d2631", "coral": "#d0735c",
     "blush": "#d3a498", "pink": "#c98a93", "mustard": "#c79a34", "yellow": "#dab53d", "ochre": "#b58a3c",
     "orange": "#cf7630", "olive": "#73733f", "moss green": "#68794a", "sage": "#97a688", "forest green": "#35573f",
@@ -29,5 +33,6 @@ def linear_rgb(name: str) -> tuple[float, float, float]:
 
 
 def _linear(srgb: tuple[int, ...]) -> tuple[float, float, float]:
-    r, g, b = ((c / 255 + 0.055) / 1.055 for c in srgb)
-    return r**2.4, g**2.4, b**2.4
+    r, g, b = (((c / 255 + 0.055) / 1.055) ** 2.4 for c in srgb)
+    grey = 0.2126 * r + 0.7152 * g + 0.0722 * b
+    return r + MUTED * (grey - r), g + MUTED * (grey - g), b + MUTED * (grey - b)

@@ -5,10 +5,13 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+TOUCH = 1e-3
+"""Metres that two things may overlap in height and still only touch: placed sizes are rounded."""
+
 
 @dataclass(frozen=True)
 class Solid:
-    """An upright box: middle of its plan, ``width`` along its own x, ``depth`` along its own y, metres; yaw in radians."""
+    """An upright box: middle of its plan, ``width`` and ``depth`` along its own x and y, metres; yaw in radians."""
 
     x: float
     y: float
@@ -44,7 +47,7 @@ class Solid:
 
 @dataclass
 class Occupied:
-    """Boxes that are taken. ``hits`` asks whether a new one would come within ``gap`` metres of any, in plan and over z."""
+    """Boxes that are taken, and whether a new one would come too near."""
 
     rows: list[tuple[float, ...]] = field(default_factory=list)
 
@@ -56,7 +59,7 @@ class Occupied:
         if not self.rows:
             return False
         t = np.array(self.rows)  # (M, 7)
-        t = t[(t[:, 4] < solid.top - 1e-6) & (t[:, 5] > solid.bottom + 1e-6)]
+        t = t[(t[:, 4] < solid.top - TOUCH) & (t[:, 5] > solid.bottom + TOUCH)]
         if len(t) == 0:
             return False
         offset = t[:, :2] - [solid.x, solid.y]  # (M, 2)

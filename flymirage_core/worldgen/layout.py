@@ -1,6 +1,6 @@
 """Where everything stands: a description's objects placed in its room, honouring its words, never through each other.
 
-Large things first: along the walls, then groups in the open, then what stands on them, hangs on walls and from the ceiling.
+Large things first: along the walls, then groups in the open, then what stands on them and hangs on walls and ceiling.
 Each is tried at seeded random spots; the first that is free is taken. What finds no spot is reported, not squeezed in.
 """
 
@@ -203,7 +203,7 @@ def _spots_anywhere(layout: Layout, size: tuple[float, float, float], rng: np.ra
 def _place_on_floor(
     layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
 ) -> None:
-    """Large things in the open with a passage round them; small ones wherever there is a gap; rugs under what they name."""
+    """Large things in the open with a passage round them; small ones wherever there is a gap; rugs under things."""
     if kind.flat:
         _spread_rugs(layout, planned, size, rng)
         return

@@ -1,8 +1,9 @@
-"""Baked light: lamps and windows with soft shadows, two bounces through probes, and contact shading. Linear RGB throughout.
+"""Baked light: lamps and windows with soft shadows, two bounces through probes, and contact shading. Linear RGB.
 
-The room is a signed-distance field on a voxel grid, made from its surfels; shadows and gathers are rays stepped through it.
-Direct light is evaluated at every surfel. What it makes of the voxels' radiance is gathered at a lattice of probes (ambient
-cubes: irradiance along the six axes), which surfels interpolate; the second round adds the second bounce.
+The room is a distance field on a voxel grid, made from its surfels; shadows and gathers are rays stepped through it
+(sphere tracing). Direct light is evaluated at every surfel. The radiance that it gives the voxels is gathered at a
+lattice of probes (ambient cubes: irradiance along the six axes), which surfels interpolate; a second round adds the
+second bounce.
 """
 
 from dataclasses import dataclass
@@ -45,8 +46,8 @@ LAMP_BOOST = 5.0
 """A lamp gives this many times the light that its visible shade alone would."""
 CONTACT = ((0.10, 0.35), (0.18, 0.3), (0.32, 0.2), (0.55, 0.15))
 """Distances along the normal and weights at which the field is asked how open the place is."""
-MID_GREY = 0.185
-"""Median radiance after exposure, before the film curve."""
+MID_GREY = 0.3
+"""Radiance of the median surface after exposure, before the film curve."""
 FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.02, 1.0, 0.34, 0.16
 """A rational curve (x^2 + toe x) / (shoulder x^2 + slope x + base): dark toe, long shoulder, 1 at infinity."""
 
@@ -74,7 +75,7 @@ class Field:
 
 
 def lit_colours(surfels: Surfels, lights: Lights, dimensions: tuple[float, float, float]) -> Float:
-    """Display colours (N, 3) in [0, 1], sRGB coded: direct light, two bounces, contact shading, exposure, tone curve."""
+    """Display colours (N, 3) in [0, 1], sRGB coded: direct light, bounces, contact shading, exposure, film curve."""
     field = distance_field(surfels, dimensions)
     direct = _direct(
         surfels.points,
@@ -93,7 +94,7 @@ def lit_colours(surfels: Surfels, lights: Lights, dimensions: tuple[float, float
         radiance = _voxel_radiance(surfels.albedo * irradiance / np.pi, voxels, field)
         gathered = probes.irradiance(radiance, surfels.points, surfels.normals)
         irradiance = direct * (0.6 + 0.4 * openness[:, None]) + gathered * openness[:, None]
-    return display(glow + surfels.albedo * irradiance / np.pi)
+    return display(glow + surfels.albedo * irradiance / np.pi, surfels.areas)
 
 
 def distance_field(surfels: Surfels, dimensions: tuple[float, float, float]) -> Field:
@@ -112,10 +113,15 @@ def distance_field(surfels: Surfels, dimensions: tuple[float, float, float]) -> 
     return Field(np.maximum(distance, 0.0).astype(np.float32), origin)
 
 
-def display(radiance: Float) -> Float:
-    """Exposure to `MID_GREY`, a filmic curve for each channel (bright colours pale, as on film), sRGB coding."""
+def display(radiance: Float, areas: Float) -> Float:
+    """sRGB-coded colours (N, 3) of linear ``radiance`` (N, 3): exposure, then a filmic curve for each channel.
+
+    The median over ``areas`` (N,) is brought to `MID_GREY`; bright colours grow pale, as on film.
+    """
     luminance = radiance @ [0.2126, 0.7152, 0.0722]
-    x = np.maximum(radiance, 0.0) * (MID_GREY / max(float(np.median(luminance)), 1e-9))
+    order = np.argsort(luminance, kind="stable")
+    middle = order[np.searchsorted(np.cumsum(areas[order]), areas.sum() / 2)]
+    x = np.maximum(radiance, 0.0) * (MID_GREY / max(float(luminance[middle]), 1e-9))
     toe, shoulder = x * (x + FILM_TOE), x * (FILM_SHOULDER * x + FILM_SLOPE) + FILM_BASE
     colour = np.clip(toe / shoulder, 0.0, 1.0)
     return np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * np.maximum(colour, 1e-9) ** (1 / 2.4) - 0.055)
@@ -150,7 +156,7 @@ class Probes:
         return Probes(counts, low, step, rays, _trace(low, step, counts, field.distance, field.origin, rays))
 
     def irradiance(self, radiance: Float, points: Float, normals: Float) -> Float:
-        """Irradiance (N, 3) at points with normals, when the voxels have ``radiance`` (V, 3): ambient cubes, interpolated."""
+        """Irradiance (N, 3) at points with normals, when voxels have ``radiance`` (V, 3): ambient cubes."""
         inside = self.hits[:, 0] >= 0  # (P,)
         seen = radiance[np.maximum(self.hits, 0)]  # (P, R, 3)
         facing = np.maximum(np.concatenate([self.rays, -self.rays], 1), 0.0) * (4 * np.pi / len(self.rays))  # (R, 6)
@@ -169,7 +175,7 @@ class Probes:
 
 
 def _voxel_radiance(radiance: Float, voxels: NDArray[np.intp], field: Field) -> Float:
-    """(V, 3) mean radiance of the surfels in each voxel; a voxel without any takes the mean of its neighbours that have."""
+    """(V, 3) mean radiance of the surfels in each voxel; a voxel without any takes the mean of its neighbours."""
     shape = field.distance.shape
     flat = np.ravel_multi_index(tuple(voxels.T), shape)
     count = np.bincount(flat, minlength=field.distance.size).astype(float).reshape(shape)
@@ -204,7 +210,7 @@ def _distance_at(field: Float32, x: float, y: float, z: float) -> float:
     a += (field[i, j + 1, k] * (1 - u) + field[i + 1, j + 1, k] * u) * v
     b = (field[i, j, k + 1] * (1 - u) + field[i + 1, j, k + 1] * u) * (1 - v)
     b += (field[i, j + 1, k + 1] * (1 - u) + field[i + 1, j + 1, k + 1] * u) * v
-    return a * (1 - w) + b * w
+    return float(a * (1 - w) + b * w)
 
 
 @numba.njit(cache=True, nogil=True)

@@ -1,6 +1,6 @@
 """What surfaces look like before light falls on them: materials, and procedural textures that give albedo per point.
 
-Colours are linear RGB in [0, 1]. Textures are functions of metres on the surface, so grain and tiles have their real size.
+Colours are linear RGB in [0, 1]. Textures are functions of metres, so grain and tiles have their real size.
 """
 
 from collections.abc import Callable
@@ -19,8 +19,10 @@ DENSE_TEXTURE = 0.6
 
 @dataclass(frozen=True)
 class Material:
-    """A surface's look. ``joints`` are (pitch along u, pitch along v, width) in metres, 0 = none; ``stretch`` is how much
-    longer than wide its surfels are (along the grain); ``detail`` multiplies the surfels' spacing.
+    """A surface's look.
+
+    ``joints`` are (pitch along u, pitch along v, width) in metres, 0 = none; ``stretch`` is how much longer than wide
+    its surfels are (along the grain); ``detail`` multiplies the surfels' spacing.
     """
 
     colour: tuple[float, float, float]
@@ -103,7 +105,7 @@ def _wood(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> F
     along, across = uv[:, 0], uv[:, 1]
     offset = points.sum(axis=1) * 0.05
     warp = value_noise(np.stack([along * 1.3, across * 5.0 + offset], 1), seed)
-    grain = value_noise(np.stack([along * 2.0, across * 45.0 + 3 * warp], 1), seed + 1)
+    grain = value_noise(np.stack([along * 2.0, across * 20.0 + 2 * warp], 1), seed + 1)
     tone = 1 + 0.10 * warp + 0.14 * grain
     return np.stack([tone, tone * (1 - 0.02 * grain), tone * (1 - 0.05 * grain)], 1)
 
@@ -141,7 +143,7 @@ def _bricks(uv: Float, extent: tuple[float, float], points: Float, seed: int) ->
     end = (along - brick[:, 0]) * length
     mortar = (np.minimum(across, height - across) < 0.006) | (np.minimum(end, length - end) < 0.008)
     tone = 1 + 0.4 * (lattice_hash(brick, seed) - 0.5) + 0.08 * value_noise(uv * 12.0, seed + 1)
-    return np.where(mortar[:, None], 1.25, tone[:, None]) * np.ones(3)
+    return _grey(np.where(mortar, 1.25, tone))
 
 
 def _carpet(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> Float:
@@ -190,17 +192,17 @@ def _painting(uv: Float, extent: tuple[float, float], points: Float, seed: int) 
     x, y = uv[:, 0] / extent[0], uv[:, 1] / extent[1]
     wobble = 0.12 * value_noise(np.stack([x * 3.0, y * 2.0], 1), seed)
     band = np.floor((y + wobble) * generator.integers(3, 6)).astype(np.int64)
-    image = _hue(hue + band * generator.uniform(0.3, 0.7), 0.28 + 0.12 * (band % 3))
+    image = _hue(np.asarray(hue + band * generator.uniform(0.3, 0.7)), np.asarray(0.28 + 0.12 * (band % 3)))
     for _ in range(int(generator.integers(1, 4))):
         centre, radius = generator.uniform(0.2, 0.8, 2), generator.uniform(0.1, 0.24)
         inside = np.hypot(x - centre[0], (y - centre[1]) * extent[1] / extent[0]) < radius
         image[inside] = _hue(np.full(1, hue + generator.uniform(2, 4)), np.full(1, generator.uniform(0.15, 0.5)))
-    return image * (1 + 0.08 * value_noise(uv * 20.0, seed))[:, None]
+    return np.asarray(image) * (1 + 0.08 * value_noise(uv * 20.0, seed))[:, None]
 
 
-def _hue(angle: Float, level: Float | NDArray[np.float64]) -> Float:
+def _hue(angle: Float, level: Float) -> Float:
     phases = np.array([0.0, 2.1, 4.2])
-    return np.asarray(level)[..., None] * (1 + 0.6 * np.cos(angle[..., None] - phases))
+    return np.asarray(level[..., None] * (1 + 0.6 * np.cos(angle[..., None] - phases)), np.float64)
 
 
 def _screen(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> Float:
@@ -211,7 +213,7 @@ def _screen(uv: Float, extent: tuple[float, float], points: Float, seed: int) ->
     length = 0.25 + 0.5 * lattice_hash(line[:, None], seed)
     text = (y * 9 - line > 0.35) & (y * 9 - line < 0.65) & (x > 0.1) & (x < length) & (line > 0) & (line < 8)
     image[text] = (0.25, 0.32, 0.36)
-    return image
+    return np.asarray(image)
 
 
 def _notes(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> Float:

@@ -1,4 +1,4 @@
-"""The embedded twins of the image model and the world model: a furnished, lit room out of a description, and its picture."""
+"""The embedded twins of the image model and the world model: a furnished, lit room out of words, and its picture."""
 
 from functools import lru_cache
 
@@ -18,8 +18,9 @@ NAME = "offline 1"
 PICTURE_SIZE = (960, 640)
 PICTURE_FOV_DEG = 82.0
 PICTURE_BACK = 0.42
-"""The picture is taken from this share of the way between the room's middle and a corner, at `PICTURE_HEIGHT` metres."""
+"""The picture is taken from the room's middle plus this share of its sides, towards a corner."""
 PICTURE_HEIGHT = 1.9
+"""Metres."""
 
 
 class OfflineWorldModel:
@@ -31,7 +32,7 @@ class OfflineWorldModel:
         self.settings = settings
 
     def build(self, description: SceneDescription, picture: ScenePicture | None = None) -> World:
-        """A world of about ``settings.gaussians`` Gaussians; the floor's middle is the origin, c is free for 1 m around."""
+        """A world of about ``settings.gaussians`` Gaussians; the floor's middle is the origin, c is free for 1 m."""
         return _built(description, self.settings.gaussians)
 
 

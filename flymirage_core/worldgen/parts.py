@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -83,7 +84,7 @@ def tube(material: Material, points: ArrayLike, radius: float) -> list[Part]:
     """A round bar or pipe along a polyline (P, 3)."""
     path = np.asarray(points, float)
     parts = []
-    for a, b in zip(path, path[1:], strict=False):
+    for a, b in pairwise(path):
         axis = b - a
         length = float(np.linalg.norm(axis))
         z = axis / length
@@ -97,7 +98,7 @@ def tube(material: Material, points: ArrayLike, radius: float) -> list[Part]:
 
 
 def picture(material: Material, width: float, height: float, base: Vector) -> Part:
-    """An upright rectangle that faces +y, its bottom's middle at ``base``; read from the front, u runs left to right."""
+    """An upright rectangle that faces +y, its bottom's middle at ``base``; seen from there u runs left to right."""
     x, y, z = base
     return Part(Sheet((x + width / 2, y, z), (-width, 0.0, 0.0), (0.0, 0.0, height)), material)
 

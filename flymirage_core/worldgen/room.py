@@ -1,4 +1,4 @@
-"""The empty room: its four walls as lines to put things along, its openings, and the surfaces of floor, walls and ceiling."""
+"""The empty room: its walls as lines to put things along, its openings, its surfaces."""
 
 from dataclasses import dataclass, replace
 
@@ -33,7 +33,7 @@ WALLS = {
 
 @dataclass(frozen=True, eq=False)
 class Wall:
-    """A wall as a line: ``origin`` (2,) is its left end seen from inside, ``along`` and ``inward`` (2,) are unit vectors."""
+    """A wall as a line: ``origin`` (2,) is its left end seen from inside; ``along`` and ``inward`` (2,) are units."""
 
     origin: NDArray[np.float64]
     along: NDArray[np.float64]
@@ -97,7 +97,7 @@ def room_for(description: SceneDescription) -> Room:
 
 
 def shell(room: Room, description: SceneDescription) -> list[Part]:
-    """Floor, ceiling and walls, closed, with their windows, doors and skirting, in world coordinates."""
+    """Floor, ceiling, walls and skirting, closed, in world coordinates."""
     x, y, z = room.dimensions
     clauses, palette = description.style.lower().split(","), description.palette
     seed = int(seeded(description.scene, "shell").integers(1 << 16))
@@ -113,11 +113,14 @@ def shell(room: Room, description: SceneDescription) -> list[Part]:
     for number, line in enumerate(room.walls):
         gaps = [(d.left, d.right) for d in room.doors if d.wall == number]
         parts += _skirting(line, gaps)
-    for window in room.windows:
-        parts += _window(room.walls[window.wall], window, seed)
-    for door in room.doors:
-        parts += _door(room.walls[door.wall], door, DOOR_COLOURS[seed % len(DOOR_COLOURS)])
     return parts
+
+
+def fixtures(room: Room, description: SceneDescription) -> list[list[Part]]:
+    """The parts of each window and each door, in world coordinates."""
+    seed = int(seeded(description.scene, "shell").integers(1 << 16))
+    windows = [_window(room.walls[w.wall], w, seed) for w in room.windows]
+    return windows + [_door(room.walls[d.wall], d, DOOR_COLOURS[seed % len(DOOR_COLOURS)]) for d in room.doors]
 
 
 def _finish(choices: dict[str, Material], clauses: list[str], colour: str, seed: int) -> Material:
@@ -146,7 +149,7 @@ def _skirting(line: Wall, gaps: list[tuple[float, float]]) -> list[Part]:
 def _window(line: Wall, w: Opening, seed: int) -> list[Part]:
     width, height, bar = w.right - w.left, w.top - w.bottom, 0.07
     frame = paint("white")
-    sky = Material((0.9, 0.9, 0.9), "sky", emission=1.0, detail=1.2, seed=seed)
+    sky = Material((0.9, 0.9, 0.9), "sky", emission=0.7, detail=1.2, seed=seed)
     parts = [picture(sky, width - 0.04, height - 0.04, (0, 0.015, 0.02))]
     parts += [box(frame, (bar, 0.06, height), (s * (width - bar) / 2, 0.03, 0)) for s in (-1, 0, 1)]
     parts += [box(frame, (width, 0.06, bar), (0, 0.03, h)) for h in (0.0, height - bar)]

@@ -1,4 +1,4 @@
-"""Lamps, plants, vessels, electronics, and what hangs on walls and ceilings. Every builder fills its size; +y is the front."""
+"""Lamps, plants, vessels, electronics, what hangs on walls and ceilings. Builders fill their size; +y is the front."""
 
 from dataclasses import replace
 

@@ -72,8 +72,9 @@ def workbench(size: Vector, f: Finish) -> list[Part]:
 def counter(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
     body = box(f.second, (x - 0.04, y - 0.06, z - 0.05), (0, -0.01, 0.0))
-    panels = [box(f.second.shaded(1.25), (x / n - 0.06, 0.015, z - 0.3), ((i + 0.5) * x / n - x / 2, y / 2 - 0.04, 0.13))
-              for n in (max(2, round(x / 0.6)),) for i in range(n)]  # fmt: skip
+    n = max(2, round(x / 0.6))
+    panel = f.second.shaded(1.25), (x / n - 0.06, 0.015, z - 0.3)
+    panels = [box(*panel, ((i + 0.5) * x / n - x / 2, y / 2 - 0.04, 0.13)) for i in range(n)]
     return [box(f.main, (x, y, 0.05), (0, 0, z - 0.05), 0.01), body, *panels]
 
 

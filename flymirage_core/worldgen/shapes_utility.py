@@ -1,4 +1,4 @@
-"""Crates, machines, signs, vessels and street-like things. Every builder fills the size (x, y, z) it is given; +y is the front."""
+"""Crates, machines, signs, vessels. Every builder fills the size (x, y, z) it is given; +y is the front."""
 
 import numpy as np
 

@@ -6,6 +6,7 @@ centre of the footprint, z up from its base, +y the front.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +38,11 @@ class Surfels:
 
     def __getitem__(self, index: NDArray[np.bool_] | NDArray[np.intp]) -> "Surfels":
         return Surfels(*(getattr(self, name)[index] for name in self.__dataclass_fields__))
+
+    @property
+    def areas(self) -> Float:
+        """(N,) square metres."""
+        return np.asarray(np.linalg.norm(self.along, axis=1) * np.linalg.norm(self.across, axis=1))
 
     def moved(self, rotation: Float, offset: ArrayLike) -> "Surfels":
         """Turned by ``rotation`` (3, 3), then shifted by ``offset`` (3,) metres."""
@@ -74,7 +80,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Lathe:
-    """A profile of (radius, z) points turned about z, then scaled along x and y. Where it rises, outside is away from z."""
+    """A profile of (radius, z) points turned about z, scaled in x and y. Where it rises, outside is away from z."""
 
     profile: tuple[tuple[float, float], ...]
     scale: tuple[float, float] = (1.0, 1.0)
@@ -118,15 +124,11 @@ def surfels_of(part: Part, spacing: float) -> Surfels:
 
 
 def cells(length: float, spacing: float, pitch: float = 0.0, joint: float = 0.0) -> tuple[Float, Float]:
-    """Centres and widths of cells that fill ``length``: even inside, narrow at both ends, one narrow cell at each joint."""
+    """Centres and widths of cells that fill ``length``: even inside, narrow at both ends and at each joint."""
     if pitch > 0:
         joints = np.arange(pitch, length - joint, pitch)
-        inner = np.sort(np.concatenate([joints - joint / 2, joints + joint / 2]))
-        bounds = np.concatenate([[0.0], inner, [length]])
-        edges = [
-            np.linspace(a, b, max(1, round((b - a) / spacing)) + 1)[:-1]
-            for a, b in zip(bounds, bounds[1:], strict=False)
-        ]
+        bounds = np.concatenate([[0.0], np.sort(np.concatenate([joints - joint / 2, joints + joint / 2])), [length]])
+        edges = [np.linspace(a, b, max(1, round((b - a) / spacing)) + 1)[:-1] for a, b in pairwise(bounds)]
         edge = np.concatenate([*edges, [length]])
         return (edge[1:] + edge[:-1]) / 2, np.diff(edge)
     rim = sum(EDGE_CELLS) * spacing
@@ -182,9 +184,13 @@ def _block(block: Block, material: Material, spacing: float) -> list[Surfels]:
             i, j = ((axis + 1) % 3, (axis + 2) % 3) if sign > 0 else ((axis + 2) % 3, (axis + 1) % 3)
             corner, a, b = np.where(np.arange(3) == axis, sign * half, -half), np.zeros(3), np.zeros(3)
             a[i], b[j] = 2 * half[i], 2 * half[j]
-            flat = _sheet(Sheet(tuple(corner), tuple(a), tuple(b)), material, spacing)
+            flat = _sheet(Sheet(_vector(corner), _vector(a), _vector(b)), material, spacing)
             pieces.append(_rounded(flat, half, block.radius) if block.radius > 0 else flat)
     return pieces
+
+
+def _vector(array: Float) -> Vector:
+    return float(array[0]), float(array[1]), float(array[2])
 
 
 def _rounded(flat: Surfels, half: Float, radius: float) -> Surfels:
@@ -204,12 +210,12 @@ def _rounded(flat: Surfels, half: Float, radius: float) -> Surfels:
 
 
 def _lathe(lathe: Lathe, material: Material, spacing: float) -> list[Surfels]:
-    pieces = []
+    pieces: list[Surfels] = []
     profile = np.asarray(lathe.profile, float)  # (P, 2)
     scale = np.array([*lathe.scale, 1.0])
     start = 0.0
     du, dv = _spacings(material, spacing)[::-1]
-    for (r0, z0), (r1, z1) in zip(profile, profile[1:], strict=False):
+    for (r0, z0), (r1, z1) in pairwise(profile):
         length = float(np.hypot(r1 - r0, z1 - z0))
         if length < 1e-6:
             continue

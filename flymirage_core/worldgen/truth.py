@@ -1,4 +1,4 @@
-"""`WorldTruth`: what the embedded world model put where. For measuring and for tests only: perception never reads it."""
+"""`WorldTruth`: what the embedded world model put where. For measuring and tests only: perception never reads it."""
 
 import json
 from dataclasses import asdict, dataclass
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class PlacedObject:
-    """One object of the generated world. World frame (z up), metres; ``yaw`` turns its own x axis from world +x, radians."""
+    """One object of the generated world. World frame, metres; ``yaw`` turns its x axis from world +x, radians."""
 
     object_id: int
     noun: str
@@ -48,7 +48,7 @@ class Unplaced:
 
 @dataclass(frozen=True)
 class WorldTruth:
-    """Everything in a generated room: ``dimensions`` (x, y, z) with the floor's middle at the origin, and the centre c."""
+    """All that is in a generated room: ``dimensions`` (x, y, z), the floor's middle at the origin, and the centre c."""
 
     scene: str
     dimensions: tuple[float, float, float]
