@@ -115,7 +115,9 @@ class TaskSettings(Section):
     safety_radius: Positive = 0.35
     """No occupied point may lie this close to a target point."""
     stand_off: Positive = 0.8
-    """Distance of the target point from the object's box, towards where the drone comes from."""
+    """Least distance of the target point from the object's box, towards where the drone comes from."""
+    stand_off_per_size: Positive = 0.8
+    """Wanted distance for each metre of the object's longest side: the camera then sees all of it."""
     passage_radius: Positive = 0.3
     """Starts and target points are joined by ways that are free for a ball of this radius: the planner's inflation."""
 

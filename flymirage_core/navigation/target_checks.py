@@ -24,6 +24,13 @@ Reason = Literal["inside_box", "occluded", "unsafe_waypoint", "distance"]
 
 MAX_TARGET_SIZE: Final = 3.0
 """Metres. Longer boxes are walls, floors, counters round a room: one cannot be said to be in front of them."""
+UNNAMED: Final = "object"
+"""What annotators call a thing they cannot name."""
+UNNAMED_SIZES: Final = (0.15, 1.8)
+"""Metres: least second longest side and greatest longest side of an unnamed target. Slivers of edges and the panels of
+walls and curtains, which captured rooms are full of, lie outside."""
+FRAMING_STEPS: Final = 3
+"""Distances tried between the one from which the whole object is seen and the least."""
 STRUCTURE: Final = frozenset({"", "wall", "floor", "ceiling", "room", "unknown", "background"})
 """Labels that name no object to fly to."""
 MAX_FINAL_ELEVATION: Final = np.tan(np.radians(18))
@@ -40,7 +47,10 @@ class TaskSpace:
 
 
 def is_sensible_target(box: ObjectBox) -> bool:
-    """Whether one would send a drone there at all: it has a name, and is neither the room nor as large as one."""
+    """Whether one would send a drone there at all: neither the room nor as large, nor an unnamed sliver or panel."""
+    if box.label == UNNAMED:
+        _, second, longest = sorted(box.size)
+        return UNNAMED_SIZES[0] <= second and longest <= UNNAMED_SIZES[1]
     return box.label not in STRUCTURE and max(box.size) <= MAX_TARGET_SIZE
 
 
@@ -50,15 +60,17 @@ def check_target(box: ObjectBox, drone: Float64, space: TaskSpace, settings: Tas
         return "inside_box"
     if not is_visible(box, drone, space.grid, settings.sight_radius):
         return "occluded"
-    safe = [p for p in target_points(box, drone, settings.stand_off, space.grid) if _is_safe(p, space, settings)]
+    safe = [p for p in target_points(box, drone, settings, space.grid) if _is_safe(p, space, settings)]
     if not safe:
         return "unsafe_waypoint"
     seeing = [p for p in safe if is_visible(box, p, space.grid, settings.sight_radius)]
     if not seeing:
         return "occluded"
-    if not settings.min_distance <= travel_distance(space.passable, drone, seeing[0]) <= settings.max_distance:
-        return "distance"
-    return seeing[0]
+    best_at = {(float(p[0]), float(p[1])): p for p in reversed(seeing)}  # the best height at each distance from the box
+    for point in reversed(best_at.values()):
+        if settings.min_distance <= travel_distance(space.passable, drone, point) <= settings.max_distance:
+            return point
+    return "distance"
 
 
 def is_visible(box: ObjectBox, drone: Float64, grid: OccupancyGrid, sight_radius: float) -> bool:
@@ -76,11 +88,12 @@ def is_visible(box: ObjectBox, drone: Float64, grid: OccupancyGrid, sight_radius
     return cylinder_is_clear(grid, drone, drone + entry * (centre - drone), sight_radius)
 
 
-def target_points(box: ObjectBox, drone: Float64, stand_off: float, grid: OccupancyGrid) -> list[Float64]:
-    """Candidate target points (3,): ``stand_off`` metres from the box, horizontally towards the drone.
+def target_points(box: ObjectBox, drone: Float64, settings: TaskSettings, grid: OccupancyGrid) -> list[Float64]:
+    """Candidate target points (3,), best first: before the box, horizontally towards the drone.
 
-    Their heights are the object's centre's and others, nearest first, from which a level camera still sees it. None if
-    the drone is right above or below the object.
+    They stand off far enough to see all of a large object, else at less and at least at ``settings.stand_off``. Their
+    heights are the object's centre's and others, nearest first, from which a level camera still sees it. None if the
+    drone is right above or below the object.
     """
     centre = np.array(box.centre)
     towards = drone[:2] - centre[:2]
@@ -89,10 +102,15 @@ def target_points(box: ObjectBox, drone: Float64, stand_off: float, grid: Occupa
         return []
     towards = np.array([*(towards / horizontal), 0.0])
     along = np.abs(towards @ box.rotation)[:2]  # (2,) the direction along the box's own x and y
-    reach = float(np.min(np.array(box.size[:2]) / 2 / np.maximum(along, 1e-9))) + stand_off
-    steps = int(reach * MAX_FINAL_ELEVATION / grid.resolution)
-    heights = sorted(range(-steps, steps + 1), key=lambda n: (abs(n), -n))
-    return [centre + towards * reach + [0.0, 0.0, n * grid.resolution] for n in heights]
+    half_depth = float(np.min(np.array(box.size[:2]) / 2 / np.maximum(along, 1e-9)))
+    whole = max(settings.stand_off, settings.stand_off_per_size * max(box.size))
+    points: list[Float64] = []
+    for stand_off in np.unique(np.linspace(settings.stand_off, whole, FRAMING_STEPS))[::-1]:
+        reach = half_depth + float(stand_off)
+        steps = int(reach * MAX_FINAL_ELEVATION / grid.resolution)
+        heights = sorted(range(-steps, steps + 1), key=lambda n: (abs(n), -n))
+        points += [centre + towards * reach + [0.0, 0.0, n * grid.resolution] for n in heights]
+    return points
 
 
 def travel_distance(passable: OccupancyGrid, start: Float64, end: Float64) -> float:

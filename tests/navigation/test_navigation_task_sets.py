@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from flight_worlds import empty_room, fill, furnished_room, put, thing
@@ -31,7 +33,13 @@ def check(grid, box=CABINET, drone=DRONE, settings=SETTINGS):
 
 def test_a_good_target_gets_a_point_in_front_of_it_towards_the_drone():
     point = check(room())
-    np.testing.assert_allclose(point, [5.2 - SETTINGS.stand_off, 2.0, 1.0], atol=0.02)
+    np.testing.assert_allclose(point, [5.2 - SETTINGS.stand_off_per_size * 2.0, 2.0, 1.0], atol=0.02)
+
+
+def test_a_target_without_room_to_see_all_of_it_is_approached_more_closely():
+    shelf = fill(room(), (3.4, 2.3, 0.0), (3.8, 2.4, 2.6))  # beside the point that sees all of the cabinet
+    point = check(shelf)
+    assert 4.0 - 0.02 <= point[0] <= 5.2 - SETTINGS.stand_off
 
 
 def test_a_target_whose_box_the_drone_is_in_is_rejected():
@@ -55,7 +63,7 @@ def test_the_objects_own_matter_and_what_is_behind_it_do_not_hide_it():
 
 
 def test_a_target_point_with_matter_near_it_is_rejected():
-    beam = fill(room(), (4.2, 2.3, 0.0), (4.6, 2.4, 2.6))  # beside the target point, off the ray
+    beam = fill(room(), (3.4, 2.3, 0.0), (4.6, 2.4, 2.6))  # beside the target points, off the ray
     assert check(beam) == "unsafe_waypoint"
 
 
@@ -65,7 +73,7 @@ def test_a_target_point_that_cannot_be_reached_is_rejected():
     assert check(window) == "unsafe_waypoint"
 
 
-@pytest.mark.parametrize(("start", "settings"), [((3.0, 2.0, 1.2), SETTINGS), (DRONE, TaskSettings(max_distance=3.0))])
+@pytest.mark.parametrize(("start", "settings"), [((3.0, 2.0, 1.2), SETTINGS), (DRONE, TaskSettings(max_distance=2.2))])
 def test_a_target_nearer_or_farther_than_the_limits_is_rejected(start, settings):
     assert check(room(), drone=np.array(start), settings=settings) == "distance"
 
@@ -88,14 +96,20 @@ def test_a_low_object_is_looked_at_from_as_low_as_is_safe():
 
 
 def test_there_is_no_target_point_right_above_an_object():
-    assert target_points(CABINET, np.array([5.6, 2.0, 2.5]), 0.8, room()) == []
+    assert target_points(CABINET, np.array([5.6, 2.0, 2.5]), SETTINGS, room()) == []
 
 
 def test_walls_and_nameless_things_are_no_targets():
     assert is_sensible_target(CABINET)
     assert not is_sensible_target(thing(1, (0, 0, 1), (6.0, 0.2, 2.6)))
-    unnamed = thing(1, (0, 0, 1), (1, 1, 1)).__class__(**{**vars(CABINET), "label": ""})
-    assert not is_sensible_target(unnamed)
+    assert not is_sensible_target(replace(CABINET, label=""))
+
+
+@pytest.mark.parametrize(
+    ("size", "sensible"), [((0.5, 0.5, 0.5), True), ((0.1, 0.1, 1.5), False), ((0.2, 2.2, 2.4), False)]
+)
+def test_of_unnamed_things_slivers_and_panels_are_no_targets(size, sensible):
+    assert is_sensible_target(replace(CABINET, label="object", size=size)) == sensible
 
 
 @pytest.fixture(scope="module")
