@@ -119,9 +119,10 @@ def frames(stage: Stage, product: Frames, world: World, trajectories: Trajectori
         return text_card("no flight was recorded", [])
     flight = product.flight(max(product.flight_ids, key=lambda i: len(product.flight(i))))
     shown = _six(flight)
-    rgb = [p for i, p in enumerate(flight.rgb()) if i in shown]
-    depth = [_depth_picture(d) for i, d in enumerate(flight.depth()) if i in shown]
-    return contact_sheet(rgb + depth, [_stamp(flight, i) for i in shown] * 2, columns=len(shown), width=180)
+    depth = [_depth_picture(d) for d in flight.depth_at(shown)]
+    return contact_sheet(
+        flight.rgb_at(shown) + depth, [_stamp(flight, i) for i in shown] * 2, columns=len(shown), width=180
+    )
 
 
 def quality_verdict(
@@ -130,8 +131,8 @@ def quality_verdict(
     """The last frame of each flight: framed green if kept, red with the failed gates if dropped."""
     tiles, captions = [], []
     for verdict in product:
-        last = next(reversed(list(frames.flight(verdict.flight_id).rgb())))
-        last = last.copy()
+        flight = frames.flight(verdict.flight_id)
+        last = flight.rgb_at([len(flight) - 1])[0].copy()
         cv2.rectangle(last, (0, 0), (last.shape[1] - 1, last.shape[0] - 1), START if verdict.keep else GOAL, 12)
         failed = ", ".join(g.gate for g in verdict.gates if not g.passed)
         tiles.append(last)
@@ -152,8 +153,7 @@ def prompts(
     for flight_id in list(dict.fromkeys(p.flight_id for p in product))[:3]:
         flight = frames.flight(flight_id)
         shown = _six(flight)
-        pictures = [p for i, p in enumerate(flight.rgb()) if i in shown]
-        sheet = contact_sheet(pictures, [_stamp(flight, i) for i in shown], columns=len(shown), width=150)
+        sheet = contact_sheet(flight.rgb_at(shown), [_stamp(flight, i) for i in shown], columns=len(shown), width=150)
         texts = [f"{p.kind}: {p.text}" for p in product.of_flight(flight_id)]
         rows += [sheet, text_card(f"flight {flight_id}", texts, sheet.shape[1])]
     return stacked(rows) if rows else text_card("no prompt was written", [])

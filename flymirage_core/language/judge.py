@@ -84,9 +84,8 @@ def sampled_indices(frame_count: int, frame_rate: float, frame_step: int) -> lis
 
 
 def sample(frames: FlightFrames, frame_step: int) -> Iterator[Sighting]:
-    """The sampled frames of a flight; both videos are decoded once. Raises `ProductError` if one is torn."""
-    wanted = set(sampled_indices(len(frames), frames.rig.frame_rate, frame_step))
+    """The sampled frames of a flight; no others are decoded. Raises `ProductError` if a video is torn."""
+    wanted = sampled_indices(len(frames), frames.rig.frame_rate, frame_step)
     cameras = frames.cameras()
-    for index, (rgb, depth) in enumerate(zip(frames.rgb(), frames.depth(), strict=True)):
-        if index in wanted:
-            yield Sighting(index, cameras[index], rgb, depth)
+    for index, rgb, depth in zip(wanted, frames.rgb_at(wanted), frames.depth_at(wanted), strict=True):
+        yield Sighting(index, cameras[index], rgb, depth)

@@ -7,7 +7,7 @@ decoded before it is asked for.
 
 import json
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -22,7 +22,7 @@ from flymirage_core.errors import InputError, ProductError
 from flymirage_core.files import link_tree
 from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rasterizer, Rendering
-from flymirage_core.rendering.video import depth_writer, read_depth, read_rgb, rgb_writer
+from flymirage_core.rendering.video import depth_writer, read_depth, read_depth_at, read_rgb, read_rgb_at, rgb_writer
 from flymirage_core.rendering.views import depth_to_millimetres
 from flymirage_core.settings import FrameSettings
 from flymirage_core.splats.cloud import GaussianCloud
@@ -93,6 +93,14 @@ class FlightFrames:
     def rgb(self) -> Iterator[NDArray[np.uint8]]:
         """Pictures (H, W, 3), in order. Raises `ProductError` if the video is missing, torn or short."""
         return read_rgb(self.folder / "rgb.mp4", len(self))
+
+    def rgb_at(self, indices: Iterable[int]) -> list[NDArray[np.uint8]]:
+        """The pictures at ``indices``, without decoding all that come before. Errors as in `rgb`."""
+        return read_rgb_at(self.folder / "rgb.mp4", indices)
+
+    def depth_at(self, indices: Iterable[int]) -> list[NDArray[np.uint16]]:
+        """The depth frames at ``indices``. Errors as in `rgb`."""
+        return read_depth_at(self.folder / "depth.mkv", indices)
 
     def depth(self) -> Iterator[NDArray[np.uint16]]:
         """Depth (H, W) in millimetres, in order; 0 = no return. Raises `ProductError` as `rgb` does."""

@@ -115,14 +115,42 @@ def write_depth(path: Path, frames: Iterable[NDArray[np.uint16]], rate: float) -
 
 def read_rgb(path: Path, count: int) -> Iterator[NDArray[np.uint8]]:
     """The ``count`` RGB frames (H, W, 3) of a video, one by one; raises `ProductError` if they are not all there."""
-    for planes in _decoded(path, "yuv420p", count):
-        # by OpenCV, because libswscale's default conversion comes out one grey level darker
-        yield np.asarray(cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8)
+    return (_rgb_from(planes) for planes in _decoded(path, "yuv420p", count))
+
+
+def read_rgb_at(path: Path, indices: Iterable[int]) -> list[NDArray[np.uint8]]:
+    """The RGB frames (H, W, 3) at ``indices`` of a video, without decoding those before; errors as in `read_rgb`."""
+    return [_rgb_from(planes) for planes in _decoded_at(path, "yuv420p", indices)]
+
+
+def read_depth_at(path: Path, indices: Iterable[int]) -> list[NDArray[np.uint16]]:
+    """The depth frames (H, W) in millimetres at ``indices``, without decoding those before; errors as in `read_rgb`."""
+    return list(_decoded_at(path, "gray16le", indices))
 
 
 def read_depth(path: Path, count: int) -> Iterator[NDArray[np.uint16]]:
     """The ``count`` depth frames (H, W) in millimetres, one by one; raises `ProductError` as `read_rgb` does."""
     yield from _decoded(path, "gray16le", count)
+
+
+def _rgb_from(planes: NDArray[Any]) -> NDArray[np.uint8]:
+    """By OpenCV, because libswscale's default conversion comes out one grey level darker."""
+    return np.asarray(cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8)
+
+
+def _decoded_at(path: Path, pixel_format: str, indices: Iterable[int]) -> Iterator[NDArray[Any]]:
+    try:
+        with av.open(str(path)) as container:
+            stream = container.streams.video[0]
+            for index in indices:
+                wanted = round(index / (stream.average_rate * stream.time_base))
+                container.seek(wanted, stream=stream)  # to the key frame at or before it
+                frame = next((f for f in container.decode(stream) if f.pts >= wanted), None)
+                if frame is None or frame.is_corrupt:
+                    raise ProductError(f"{path} has no whole frame {index}; materialise `frames` again")
+                yield frame.to_ndarray(format=pixel_format)
+    except (av.FFmpegError, IndexError) as error:
+        raise ProductError(f"{path} is missing or torn ({error}); materialise `frames` again") from error
 
 
 def _decoded(path: Path, pixel_format: str, count: int) -> Iterator[NDArray[Any]]:

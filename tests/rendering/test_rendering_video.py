@@ -8,7 +8,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from flymirage_core.errors import InputError, ProductError
-from flymirage_core.rendering.video import read_depth, read_rgb, write_depth, write_rgb
+from flymirage_core.rendering.video import (
+    read_depth,
+    read_depth_at,
+    read_rgb,
+    read_rgb_at,
+    write_depth,
+    write_rgb,
+)
 
 
 def smooth_pictures(count: int, width: int = 64, height: int = 48) -> list[np.ndarray]:
@@ -76,3 +83,23 @@ def test_a_torn_video_is_told_from_a_whole_one(tmp_path, kind, kept):
 def test_a_missing_video_is_one_sentence(tmp_path):
     with pytest.raises(ProductError, match=r"rgb.mp4 is missing or torn"):
         next(read_rgb(tmp_path / "rgb.mp4", 1))
+
+
+@settings(deadline=None, max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.lists(st.integers(0, 10), max_size=5), st.sampled_from([5.0, 10.0, 30.0]))
+def test_any_frame_can_be_read_without_those_before_it(tmp_path: Path, indices: list[int], rate: float):
+    frames = smooth_pictures(11)
+    depths = [np.full((48, 64), 100 + t, np.uint16) for t in range(11)]
+    write_rgb(tmp_path / "rgb.mp4", iter(frames), rate)
+    write_depth(tmp_path / "depth.mkv", iter(depths), rate)
+    in_order = list(read_rgb(tmp_path / "rgb.mp4", 11))
+    picked = read_rgb_at(tmp_path / "rgb.mp4", indices)
+    assert len(picked) == len(indices)
+    assert all((picture == in_order[i]).all() for picture, i in zip(picked, indices, strict=True))
+    assert [int(d[0, 0]) - 100 for d in read_depth_at(tmp_path / "depth.mkv", indices)] == indices
+
+
+def test_a_frame_beyond_the_end_is_one_sentence(tmp_path):
+    write_rgb(tmp_path / "rgb.mp4", iter(smooth_pictures(3)), 10)
+    with pytest.raises(ProductError, match="has no whole frame 7"):
+        read_rgb_at(tmp_path / "rgb.mp4", [7])
