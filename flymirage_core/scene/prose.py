@@ -13,15 +13,15 @@ PLURALS = {
     **IRREGULAR,
 }
 OPENINGS = (
-    "{article} {style} {place}, about {x:.0f} by {y:.0f} metres under a ceiling of {z:.1f} metres.",
-    "This {place} is {style} in character and measures roughly {x:.0f} by {y:.0f} metres, {z:.1f} metres high.",
-    "Some {x:.0f} metres long and {y:.0f} wide, the {place} is {style}; its ceiling is {z:.1f} metres up.",
-    "The {place} is a {x:.0f} by {y:.0f} metre room, {style} in style, with {z:.1f} metres of headroom.",
+    "{a_style} {place}, about {x} by {y} metres under a ceiling of {z:.1f} metres.",
+    "This {place} is {style} in character and measures roughly {x} by {y} metres, {z:.1f} metres high.",
+    "Some {x} metres long and {y} wide, the {place} is {style}; its ceiling is {z:.1f} metres up.",
+    "The {place} is {style} in style, {x} metres by {y}, with {z:.1f} metres of headroom.",
 )
 FLOORS = (
-    "Between {wall} {walls} lies a {colour} {floor}, and the place has {light}.",
-    "Underfoot is a {colour} {floor}; the {walls} are {wall}, and there is {light}.",
-    "It has {wall} {walls}, a {colour} {floor} and {light}.",
+    "Between {wall} {walls} lies {a_floor}, and the place has {light}.",
+    "Underfoot is {a_floor}; the {walls} are {wall}, and there is {light}.",
+    "It has {wall} {walls}, {a_floor} and {light}.",
 )
 PLACES = {
     "against_wall": ("Along the walls stand {things}.", "The walls are lined with {things}."),
@@ -66,8 +66,17 @@ def phrase_for(planned: PlannedObject) -> str:
     words = planned.colour if said else f"{planned.colour} {planned.material}"
     if planned.count == 1:
         return f"{article(words)} {words} {planned.noun}"
-    count = NUMBERS[planned.count] if planned.count < len(NUMBERS) else str(planned.count)
-    return f"{count} {words} {plural(planned.noun)}"
+    return f"{count(planned.count)} {words} {plural(planned.noun)}"
+
+
+def count(number: float) -> str:
+    """The nearest whole number, in words up to twelve.
+
+    >>> count(10.6), count(40)
+    ('eleven', '40')
+    """
+    whole = round(number)
+    return NUMBERS[whole] if whole < len(NUMBERS) else str(whole)
 
 
 def listing(things: list[str]) -> str:
@@ -86,15 +95,13 @@ def prose_of(description: SceneDescription, generator: np.random.Generator) -> s
 
     x, y, z = description.dimensions
     style, floor, walls = (part.strip() for part in description.style.split(","))
-    place = description.subcategory
+    place, ground = description.subcategory, f"{description.palette[1]} {floor}"
     sentences = [
-        one(OPENINGS).format(article=article(style).capitalize(), style=style, place=place, x=x, y=y, z=z),
+        one(OPENINGS).format(
+            a_style=f"{article(style).capitalize()} {style}", style=style, place=place, x=count(x), y=count(y), z=z
+        ),
         one(FLOORS).format(
-            wall=description.palette[0],
-            walls=walls,
-            colour=description.palette[1],
-            floor=floor,
-            light=description.light,
+            wall=description.palette[0], walls=walls, a_floor=f"{article(ground)} {ground}", light=description.light
         ),
     ]
     for placement, frames in PLACES.items():

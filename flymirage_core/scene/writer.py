@@ -81,6 +81,20 @@ class Want(NamedTuple):
     relative_to: str = ""
 
 
+def _anchored(counts: dict[Want, int]) -> dict[Want, int]:
+    """Without seats for what is not in the room; small things whose table is missing stand anywhere."""
+    present = {want.noun for want, n in counts.items() if n}
+    result: dict[Want, int] = {}
+    for want, n in counts.items():
+        if want.relative_to and want.relative_to not in present:
+            if want.placement == "around":
+                continue
+            want = want._replace(relative_to="")
+        if n:
+            result[want] = result.get(want, 0) + n
+    return result
+
+
 def _fill_up(
     counts: dict[Want, int],
     wanted: int,
@@ -120,6 +134,7 @@ def _objects(
         for row in data["sets"][kit]:
             want = Want(row["noun"], row["placement"], row["relative_to"])
             counts[want] = counts.get(want, 0) + int(generator.integers(row["least"], row["most"] + 1))
+    counts = _anchored(counts)
     _fill_up(counts, int(generator.integers(*OBJECTS_WANTED)), fillers, data["holds"], generator)
     planned = []
     for (noun, placement, relative_to), count in counts.items():

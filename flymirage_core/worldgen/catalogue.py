@@ -18,8 +18,8 @@ Builder = Callable[[Vector, Finish], list[Part]]
 class Kind:
     """A buildable kind of thing: sizes in metres (x, y, z) from ``smallest`` to ``largest``.
 
-    ``top`` is where small things can stand, as a share of its height (0 = nowhere). A ``square`` kind
-    keeps its proportions; a ``full_height`` one reaches from floor to ceiling; a ``flat`` one lies on the floor under other things.
+    ``top`` is where small things can stand, as a share of its height (0 = nowhere). A ``square``
+    kind keeps its proportions; a ``full_height`` one reaches from floor to ceiling; a ``flat`` one lies under things.
     """
 
     build: Builder

@@ -48,7 +48,7 @@ CONTACT = ((0.10, 0.35), (0.18, 0.3), (0.32, 0.2), (0.55, 0.15))
 """Distances along the normal and weights at which the field is asked how open the place is."""
 MID_GREY = 0.3
 """Radiance of the median surface after exposure, before the film curve."""
-FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.02, 1.0, 0.34, 0.16
+FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.06, 1.0, 0.34, 0.16
 """A rational curve (x^2 + toe x) / (shoulder x^2 + slope x + base): dark toe, long shoulder, 1 at infinity."""
 
 

@@ -182,7 +182,7 @@ def _rug(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> Fl
     band = np.where((rim > 0.10) & (rim < 0.20), 1.7, np.where(rim < 0.04, 0.7, 1.0))
     diamonds = np.abs((uv[:, 0] * 2.2) % 1 - 0.5) + np.abs((uv[:, 1] * 2.2) % 1 - 0.5)
     field = np.where((rim > 0.3) & (diamonds < 0.22), 1.45, 1.0)
-    return _carpet(uv, extent, points, seed) * (band * field)[:, None]
+    return np.asarray(_carpet(uv, extent, points, seed) * (band * field)[:, None])
 
 
 def _painting(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> Float:

@@ -11,9 +11,6 @@ from flymirage_core.worldgen.colours import linear_rgb
 from flymirage_core.worldgen.materials import Material
 from flymirage_core.worldgen.surfaces import Block, Lathe, Leaves, Part, Sheet, Vector, tilted, upright
 
-LEAF = 0.02
-"""Metres; leaves grow this much inside of the size that a plant is given, since a leaf's tip leans out."""
-
 
 @dataclass(frozen=True)
 class Finish:
@@ -118,13 +115,16 @@ def foliage(
     direction = rng.normal(size=(count, 3))
     direction[:, 2] = np.abs(direction[:, 2]) * 0.9 - 0.25
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    reach = np.maximum(np.asarray(radii) - leaf[0] * 0.5 - LEAF, 0.02)
-    centres = np.asarray(centre) + direction * reach * rng.uniform(0.45, 1.0, (count, 1))
+    centres = direction * np.asarray(radii) * rng.uniform(0.45, 1.0, (count, 1))
     lengths = direction + [0.0, 0.0, 0.35] + 0.35 * rng.normal(size=(count, 3))
     lengths *= leaf[0] / 2 / np.linalg.norm(lengths, axis=1, keepdims=True)
     side = np.cross(lengths, [0.0, 0.0, 1.0]) + 1e-6
     widths = side * (leaf[1] / 2 / np.linalg.norm(side, axis=1, keepdims=True))
-    return Part(Leaves(centres, lengths, widths), material)
+    for axis in range(3):  # spread or draw in the crown so that its leaves' tips just fill the radii
+        tip = np.abs(lengths[:, axis]) + np.abs(widths[:, axis])
+        spread = max((radii[axis] - float(tip.max())) / float(np.abs(centres[:, axis]).max()), 0.1)
+        centres[:, axis] *= spread
+    return Part(Leaves(centres + np.asarray(centre), lengths, widths), material)
 
 
 def turned_about(part: Part, yaw: float) -> Part:

@@ -339,12 +339,12 @@ def sconce(size: Vector, f: Finish) -> list[Part]:
 def hanging_plant(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
     rng = f.generator()
-    bottom = 0.25
+    bottom = 0.06
     pot = turned(
         f.main, smooth([(0, bottom), (x * 0.2, bottom), (x * 0.3, bottom + 0.2), (x * 0.26, bottom + 0.24)], 8)
     )
     green = paint(str(rng.choice(LEAF_GREENS)), "leaf", seed=f.seed)
-    leaves = foliage(green, (x / 2, y / 2, 0.3), (0, 0, bottom + 0.12), (0.16, 0.06), 90, rng)
+    leaves = foliage(green, (x / 2, y / 2, 0.3), (0, 0, 0.3), (0.16, 0.06), 90, rng)
     cords = [
         p
         for a in (0.0, 2.1, 4.2)
@@ -371,6 +371,9 @@ def coat_rack(size: Vector, f: Finish) -> list[Part]:
         )
     ]
     coat = turned(
-        f.second, smooth([(0.16, 0), (0.18, 0.3), (0.12, 0.75), (0.03, 0.85)]), (r * 0.35, 0, z - 1.02), (0.9, 0.5)
+        f.second,
+        smooth([(r * 0.6, 0), (r * 0.66, 0.3), (r * 0.5, 0.75), (0.03, 0.85)]),
+        (r * 0.34, 0, z - 1.02),
+        (1.0, 0.6),
     )
     return [pole, *hooks, coat]

@@ -1,0 +1,126 @@
+"""Worlds: closed, lit, opaque, repeatable, and shaped as the truth says."""
+
+import numpy as np
+import pytest
+
+from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
+from flymirage_core.rendering.cpu import CpuRasterizer
+from flymirage_core.scene.writer import OfflineSceneWriter
+from flymirage_core.settings import GenerationSettings
+from flymirage_core.worldgen.catalogue import KINDS, kind_of
+from flymirage_core.worldgen.colours import NAMED
+from flymirage_core.worldgen.lighting import display
+from flymirage_core.worldgen.model import OfflinePainter, OfflineWorldModel, build_truth
+from flymirage_core.worldgen.parts import Finish, paint
+from flymirage_core.worldgen.sampling import OVERLAP
+from flymirage_core.worldgen.surfaces import Surfels, cells, surfels_of
+
+SMALL = GenerationSettings(gaussians=60_000)
+
+
+@pytest.fixture(scope="module")
+def description():
+    return OfflineSceneWriter().describe("demo-0000")
+
+
+@pytest.fixture(scope="module")
+def world(description):
+    return OfflineWorldModel(SMALL).build(description)
+
+
+def test_the_same_key_gives_the_same_bytes(description, world):
+    again = OfflineWorldModel(SMALL).build(description)
+    for name in ("means", "quaternions", "scales", "opacities", "sh"):
+        assert getattr(world.cloud, name).tobytes() == getattr(again.cloud, name).tobytes(), name
+
+
+def test_the_world_has_about_as_many_gaussians_as_asked_for(world):
+    assert 0.8 * 60_000 < len(world.cloud) < 1.2 * 60_000
+
+
+def test_from_c_every_direction_ends_in_the_room(description, world):
+    intrinsics = Intrinsics.from_horizontal_fov(64, 64, np.pi / 2)
+    directions = [*np.eye(3), *-np.eye(3)]
+    cameras = [Camera(intrinsics, look_along(world.centre, d)) for d in directions]
+    x, y, z = description.dimensions
+    for picture in CpuRasterizer().render(world.cloud, cameras):
+        assert picture.alpha.min() > 0.8
+        u, v = np.meshgrid((np.arange(64) + 0.5) / 32 - 1, (np.arange(64) + 0.5) / 32 - 1)
+        distance = picture.depth * np.sqrt(1 + u * u + v * v)
+        assert distance.min() > 0.95  # and nothing is near c
+        assert distance.max() < np.linalg.norm([x, y, z])
+
+
+def test_splats_lie_inside_of_the_room_and_are_flat(description, world):
+    x, y, z = description.dimensions
+    means = world.cloud.means
+    assert (np.abs(means[:, :2]) <= np.array([x, y]) / 2 + 0.01).all()
+    assert means[:, 2].min() > -0.01
+    assert means[:, 2].max() < z + 0.01
+    ordered = np.sort(world.cloud.scales, axis=1)
+    assert np.median(ordered[:, 0] / ordered[:, 1]) < 0.2
+
+
+def test_splats_stand_where_the_truth_says_that_objects_are(description, world):
+    for o in build_truth(description).objects:
+        local = world.cloud.means - np.array(o.centre, np.float32)
+        local[:, :2] = local[:, :2] @ o.axes.T
+        inside = (np.abs(local) <= np.array(o.size) / 2 + 0.01).all(axis=1)
+        assert inside.sum() > 10, o.noun
+
+
+def test_light_falls_unevenly_but_nothing_is_black_or_blown_out(world):
+    colours = world.cloud.sh[:, 0] * 0.28209479 + 0.5
+    grey = colours.mean(axis=1)
+    assert 0.2 < np.median(grey) < 0.75
+    assert grey.std() > 0.1
+    assert (grey > 0.99).mean() < 0.08
+    assert (grey < 0.02).mean() < 0.05
+
+
+def test_the_painter_shows_the_world_that_the_model_builds(description):
+    picture = OfflinePainter(CpuRasterizer(), SMALL).paint(description)
+    assert picture.rgb.shape == (640, 960, 3)
+    assert picture.rgb.std() > 20
+    assert picture.painter.startswith("offline 1")
+
+
+@pytest.mark.parametrize("noun", sorted(KINDS))
+def test_every_kind_fills_the_size_it_is_given(noun):
+    kind = kind_of(noun)
+    for seed, size in enumerate((kind.smallest, kind.largest, kind.size(np.random.default_rng(3), 3.0))):
+        parts = kind.build(size, Finish(paint("rust", "wood"), paint("charcoal"), seed))
+        surfels = Surfels.joined([surfels_of(p, 0.05) for p in parts])
+        reach = (np.abs(surfels.along) + np.abs(surfels.across)) / 2
+        low, high = (surfels.points - reach).min(axis=0), (surfels.points + reach).max(axis=0)
+        assert np.isfinite(surfels.points).all()
+        assert (low >= np.array([-size[0] / 2, -size[1] / 2, 0.0]) - 0.02).all(), low
+        assert (high <= np.array([size[0] / 2, size[1] / 2, size[2]]) + 0.02).all(), high
+        assert (high - low >= np.array(size) * 0.78 - 0.03).all(), (high - low, size)
+
+
+def test_words_that_are_not_in_the_catalogue_become_something_near():
+    assert kind_of("antique oak desk") is KINDS["desk"]
+    assert kind_of("reading lamp").build is KINDS["floor lamp"].build
+    assert kind_of("flux capacitor").top == 0.0
+
+
+def test_every_colour_of_the_furnishing_data_is_known():
+    words = {o.colour for i in range(60) for o in OfflineSceneWriter().describe(f"k{i}").objects}
+    assert words <= set(NAMED)
+
+
+@pytest.mark.parametrize(("length", "spacing"), [(0.01, 0.05), (0.06, 0.05), (0.4, 0.05), (7.3, 0.031)])
+def test_cells_fill_their_length_without_gaps(length, spacing):
+    centres, widths = cells(length, spacing)
+    edges = np.concatenate([[0.0], np.cumsum(widths)])
+    np.testing.assert_allclose(edges[-1], length)
+    np.testing.assert_allclose(centres, (edges[1:] + edges[:-1]) / 2)
+    assert widths.max() <= 1.6 * spacing
+    assert OVERLAP * widths.max() > 0
+
+
+def test_exposure_does_not_depend_on_the_lamps_strength():
+    rng = np.random.default_rng(0)
+    radiance, areas = rng.uniform(0.01, 2.0, (500, 3)), rng.uniform(0.5, 1.0, 500)
+    np.testing.assert_allclose(display(radiance, areas), display(radiance * 37.0, areas), atol=1e-9)
