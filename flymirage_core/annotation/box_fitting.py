@@ -28,7 +28,7 @@ MIN_SUPPORT_SHARE: Final = 0.3
 MAX_SUPPORT_GAP: Final = 1.5
 """Metres down to which a floating thing is taken to reach: thin legs and poles are not seen."""
 NEAR_WALL: Final = 0.12
-MAX_WALL_GAP: Final = 0.10
+MAX_WALL_GAP: Final = 0.15
 """Metres to a wall that are taken to belong to the thing: its back is not seen."""
 MAX_TALL_WALL_GAP: Final = 0.75
 MAX_TALL_DEPTH: Final = 0.85
@@ -147,7 +147,7 @@ def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> Fitt
             if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) < 0.97:
                 continue
             depth = box.size[axis]
-            gap = float(np.dot(wall.normal, box.centre[:2])) - wall.offset - depth / 2
+            gap = float(np.dot(wall.normal, box.centre[:2])) - wall.back - depth / 2
             guessed = tall and depth < SEEN_DEPTH and depth + gap < MAX_TALL_DEPTH
             if 0.02 < gap < (MAX_TALL_WALL_GAP if guessed else MAX_WALL_GAP):
                 size = list(box.size)

@@ -14,7 +14,7 @@ from flymirage_core.annotation.box_fitting import ON_FLOOR, FittedBox, fit_box, 
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.annotation.carving import solid, supporting_frames
 from flymirage_core.annotation.colours import colour_name, colour_step, shading_free, to_lab
-from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points
+from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import Support, name_box, share_of_green
 from flymirage_core.annotation.merging import merge_parts
@@ -75,8 +75,9 @@ class EmbeddedAnnotator:
         """The building, from a coarse cloud of views spread over the sequence."""
         step = max(1, len(frames) // STRUCTURE_FRAMES)
         cloud = fuse_points(frames[::step], STRUCTURE_VOXEL, STRUCTURE_RANGE)
+        square = fuse_points([square_only(frame) for frame in frames], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
-        return find_structure(cloud.points, normals, STRUCTURE_VOXEL)
+        return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL)
 
     def _described(
         self,

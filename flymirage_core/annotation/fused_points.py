@@ -4,7 +4,7 @@ Depth of splats is mixed at edges; the edge test throws those pixels away. Nothi
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import cv2
@@ -12,7 +12,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.rendering.camera import Camera
+from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.views import View
 
 Float32 = NDArray[np.float32]
@@ -25,21 +25,27 @@ MIN_ALPHA: Final = 0.6
 MAX_DISPARITY_CURVATURE: Final = 0.045
 """Relative difference of 1/z from its 3x3 mean beyond which a pixel lies on a depth edge. Planes are linear in 1/z, so
 grazing floors pass and flying pixels do not."""
+MIN_SQUARENESS: Final = 0.2
+"""Cosine between the optical axis and a surface's normal below which depth is not believed: a splat's depth is that of its
+middle, and the nearer ones hide the others, so surfaces seen askance come out too near, by up to a splat's radius."""
+SQUARE: Final = 0.96
 NEAREST_WEIGHT_RANGE: Final = 0.5
 """Metres; pixels weigh 1/range^2, those nearer than this all the same."""
 
+SOBEL_SUM: Final = 128
+"""What OpenCV's 5x5 Sobel kernel makes of a slope of 1 a pixel."""
 KEY_BITS: Final = 21
 KEY_OFFSET: Final = 1 << (KEY_BITS - 1)
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """A view made ready: colour, depth without salt and pepper, and which pixels lie clear of depth edges."""
+    """A view made ready: colour, depth without salt and pepper, and how squarely each trusted pixel was seen."""
 
     camera: Camera
     rgb: NDArray[np.uint8]  # (H, W, 3)
     depth: Float32  # (H, W) z-depth, metres, 0 = no return
-    trusted: Bool  # (H, W)
+    squareness: Float32  # (H, W) cosine between optical axis and surface normal, 0 where the depth is not to be trusted
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +75,30 @@ def frame_of(view: View) -> Frame:
     disparity = np.where(some, 1 / np.maximum(depth, MIN_DEPTH), 0).astype(np.float32)
     curvature = np.abs(cv2.blur(disparity, (3, 3)) - disparity) * depth
     inside = cv2.erode(some.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    return Frame(view.camera, picture.rgb, depth, np.asarray(inside & (curvature < MAX_DISPARITY_CURVATURE)))
+    squareness = _squareness(disparity, view.camera.intrinsics)
+    trusted = inside & (curvature < MAX_DISPARITY_CURVATURE) & (squareness > MIN_SQUARENESS)
+    return Frame(view.camera, picture.rgb, depth, np.where(trusted, squareness, 0).astype(np.float32))
+
+
+def _squareness(disparity: Float32, k: Intrinsics) -> Float32:
+    """(H, W) cosine between the optical axis, or the pixel's ray r if that is less, and its surface's normal n.
+
+    A plane n . x = d has disparity (n . r) / d, linear in the pixel; so the gradient of disparity gives n / d.
+    """
+    across = cv2.Sobel(disparity, cv2.CV_32F, 1, 0, ksize=5, scale=1 / SOBEL_SUM)
+    down = cv2.Sobel(disparity, cv2.CV_32F, 0, 1, ksize=5, scale=1 / SOBEL_SUM)
+    x = (np.arange(k.width, dtype=np.float32) + 0.5 - k.cx) / k.fx  # (W,)
+    y = ((np.arange(k.height, dtype=np.float32) + 0.5 - k.cy) / k.fy)[:, None]  # (H, 1)
+    nx, ny = across * k.fx, down * k.fy
+    nz = disparity - nx * x - ny * y
+    length = np.sqrt(nx * nx + ny * ny + nz * nz)
+    along_ray = disparity / np.sqrt(x * x + y * y + 1)
+    return np.asarray(np.minimum(np.abs(nz), along_ray) / np.maximum(length, 1e-9), np.float32)
+
+
+def square_only(frame: Frame) -> Frame:
+    """The frame with trust in those pixels only whose surface faces the camera squarely: few, but without bias."""
+    return replace(frame, squareness=np.where(frame.squareness > SQUARE, frame.squareness, 0).astype(np.float32))
 
 
 def frames_of(views: Iterable[View]) -> list[Frame]:
@@ -81,7 +110,7 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
     """Average the trusted pixels of all frames in voxels of edge ``voxel`` metres.
 
     Only pixels within ``max_distance`` metres of their own optical centre enter: the paper's d_th1 (section III-B). Colour
-    and place are means weighted by 1/range^2, since splat depth errs by a share of the range.
+    and place are means weighted by (squareness / range)^2: splat depth errs askance, and by a share of the range.
     """
     slots = np.full(1 << 16, -1, np.int64)  # open-addressing hash table: row of each key
     keys = np.empty(1 << 15, np.int64)
@@ -97,7 +126,7 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
             _rehash(keys, count, slots)
         k, pose = frame.camera.intrinsics, frame.camera.T_world_camera
         count = _add_frame(
-            frame.rgb, frame.depth, frame.trusted, np.array([k.fx, k.fy, k.cx, k.cy]), np.ascontiguousarray(pose),
+            frame.rgb, frame.depth, frame.squareness, np.array([k.fx, k.fy, k.cx, k.cy]), np.ascontiguousarray(pose),
             voxel, min(max_distance, 1e6), index, slots, keys, rows, last, count,
         )  # fmt: skip
     return _collected(keys[:count], rows[:count])
@@ -143,7 +172,7 @@ def _rehash(keys: NDArray[np.int64], count: int, slots: NDArray[np.int64]) -> No
 def _add_frame(
     rgb: NDArray[np.uint8],  # (H, W, 3)
     depth: Float32,  # (H, W)
-    trusted: Bool,  # (H, W)
+    squareness: Float32,  # (H, W) 0 = not trusted
     lens: NDArray[np.float64],  # fx, fy, cx, cy
     pose: NDArray[np.float64],  # (4, 4) T_world_camera
     voxel: float,
@@ -158,7 +187,7 @@ def _add_frame(
     """Add a frame's trusted pixels to the table; the new number of rows."""
     for v in range(depth.shape[0]):
         for u in range(depth.shape[1]):
-            if not trusted[v, u]:
+            if squareness[v, u] <= 0:
                 continue
             x = (u + 0.5 - lens[2]) / lens[0]
             y = (v + 0.5 - lens[3]) / lens[1]
@@ -182,7 +211,7 @@ def _add_frame(
                 last[row] = -1
                 count += 1
             near = max(reach, NEAREST_WEIGHT_RANGE)
-            w = 1 / (near * near)
+            w = squareness[v, u] * squareness[v, u] / (near * near)
             for a in range(3):
                 direction = pose[a, 0] * x + pose[a, 1] * y + pose[a, 2]
                 rows[row, a] += w * (direction * z + pose[a, 3])

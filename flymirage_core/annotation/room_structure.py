@@ -4,7 +4,7 @@ Estimated from a coarse cloud of fused points without a range limit; a room has 
 matter that far points are noisy.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -43,6 +43,9 @@ WALL_CLEARANCE: Final = 0.06
 """Metres before it."""
 FLOOR_CLEARANCE: Final = 0.045
 CEILING_CLEARANCE: Final = 0.07
+BACK_PERCENTILE: Final = 25
+"""Of the distances of points seen squarely: the wall itself, behind the flat things on it."""
+MIN_SQUARE_POINTS: Final = 50
 MAP_CELL: Final = 0.15
 """Metres; cells of the floor's and ceiling's height maps, which follow rugs, steps and coffers."""
 FLOOR_RELIEF: Final = 0.14
@@ -60,6 +63,7 @@ class Wall:
     offset: float
     start: float  # extent along `direction`
     end: float
+    back: float  # offset of the plane as seen straight on; `offset` is that of most of its points, which come out nearer
 
     @property
     def direction(self) -> Float64:
@@ -114,10 +118,14 @@ class RoomStructure:
         return np.asarray(inside)
 
 
-def find_structure(points: Float32, normals: Float32, voxel: float) -> RoomStructure:
-    """Floor, ceiling, walls and yaw of the scene that ``points`` (N, 3) with ``normals`` (N, 3) show.
+def find_structure(points: Float32, normals: Float32, square: Float32, voxel: float) -> RoomStructure:
+    """Floor, ceiling, walls and yaw of a scene; without points its floor is at 0 and there is nothing else.
 
-    ``voxel``: metres, the spacing of the points. A scene without points has its floor at 0 and nothing else.
+    Args:
+        points: (N, 3) fused points of the whole scene, ``voxel`` metres apart.
+        normals: (N, 3) of theirs.
+        square: (M, 3) fused points of only those pixels that saw a surface squarely.
+        voxel: metres.
     """
     if len(points) == 0:
         return RoomStructure(0.0, None, 0.0, (), HeightMap(np.zeros(2), np.zeros((1, 1))), None)
@@ -129,6 +137,7 @@ def find_structure(points: Float32, normals: Float32, voxel: float) -> RoomStruc
     top = ceiling if ceiling is not None else floor + DEFAULT_ROOM_HEIGHT
     walls = [w for k in range(4) for w in _walls_facing(points, normals, upright, yaw + k * np.pi / 2, top, voxel)]
     yaw, walls = _aligned(points, normals, upright, yaw, walls)
+    walls = [_with_back(wall, square) for wall in walls]
     level = (normals[:, 2] > HORIZONTAL) & (np.abs(points[:, 2] - floor) < FLOOR_RELIEF)
     floor_map = _height_map(points, level, floor)
     ceiling_map = None
@@ -213,7 +222,7 @@ def _walls_facing(
         reaching = np.unique(cells[cells[:, 1] * MAP_CELL > top - CEILING_REACH, 0])
         outermost = (all_offsets < offset - WALL_THICKNESS).mean() < MAX_BEHIND and np.ptp(heights[on]) > 1.2
         if len(cells) * MAP_CELL**2 > MIN_WALL_AREA and (len(reaching) * MAP_CELL > MIN_WALL_TOP or outermost):
-            walls.append(Wall(normal, offset, float(along[on].min()), float(along[on].max())))
+            walls.append(Wall(normal, offset, float(along[on].min()), float(along[on].max()), offset))
     return walls
 
 
@@ -240,8 +249,18 @@ def _aligned(
         normal = rotation @ wall.normal
         on = upright & (np.abs(points[:, :2] @ normal - wall.offset) < 0.08) & (normals[:, :2] @ normal > 0.9)
         offset = float(np.median(points[on, :2] @ normal)) if on.any() else wall.offset
-        turned.append(Wall(normal, offset, wall.start, wall.end))
+        turned.append(Wall(normal, offset, wall.start, wall.end, offset))
     return yaw + turn, turned
+
+
+def _with_back(wall: Wall, square: Float32) -> Wall:
+    """The wall with its plane measured by points (N, 3) that cameras looked at squarely, if there are some."""
+    distance = wall.distance(square)
+    along = square[:, :2] @ wall.direction
+    near = (np.abs(distance) < WALL_THICKNESS) & (along > wall.start) & (along < wall.end)
+    if near.sum() < MIN_SQUARE_POINTS:
+        return wall
+    return replace(wall, back=wall.offset + float(np.percentile(distance[near], BACK_PERCENTILE)))
 
 
 def _height_map(points: Float32, level: Bool, default: float) -> HeightMap:
