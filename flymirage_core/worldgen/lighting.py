@@ -46,8 +46,8 @@ LAMP_BOOST = 5.0
 """A lamp gives this many times the light that its visible shade alone would."""
 CONTACT = ((0.10, 0.35), (0.18, 0.3), (0.32, 0.2), (0.55, 0.15))
 """Distances along the normal and weights at which the field is asked how open the place is."""
-MID_GREY = 0.3
-"""Radiance of the median surface after exposure, before the film curve."""
+EXPOSURE = 0.72
+"""Of a white surface in the light that half of the room's area exceeds, before the film curve."""
 FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.06, 1.0, 0.34, 0.16
 """A rational curve (x^2 + toe x) / (shoulder x^2 + slope x + base): dark toe, long shoulder, 1 at infinity."""
 
@@ -63,9 +63,13 @@ class Lights:
 
 @dataclass(frozen=True, eq=False)
 class Field:
-    """Distance to the nearest surface (metres) at voxel centres; ``origin`` is the first voxel's centre."""
+    """Distance to the nearest surface (metres) at voxel centres; ``origin`` is the first voxel's centre.
+
+    ``to_things`` leaves out the room's own surfaces: they shade nothing, since the room is convex.
+    """
 
     distance: Float32  # (X, Y, Z)
+    to_things: Float32  # (X, Y, Z)
     origin: Float  # (3,)
 
     def index(self, points: Float) -> NDArray[np.intp]:
@@ -83,7 +87,7 @@ def lit_colours(surfels: Surfels, lights: Lights, dimensions: tuple[float, float
         lights.positions,
         lights.normals,
         lights.intensities,
-        field.distance,
+        field.to_things,
         field.origin,
     )
     openness = _openness(surfels, field)
@@ -94,7 +98,10 @@ def lit_colours(surfels: Surfels, lights: Lights, dimensions: tuple[float, float
         radiance = _voxel_radiance(surfels.albedo * irradiance / np.pi, voxels, field)
         gathered = probes.irradiance(radiance, surfels.points, surfels.normals)
         irradiance = direct * (0.6 + 0.4 * openness[:, None]) + gathered * openness[:, None]
-    return display(glow + surfels.albedo * irradiance / np.pi, surfels.areas)
+    order = np.argsort(irradiance.sum(axis=1), kind="stable")
+    half = np.searchsorted(np.cumsum(surfels.areas[order]), surfels.areas.sum() / 2)
+    usual = float(irradiance[order[half]].mean())
+    return display((glow + surfels.albedo * irradiance / np.pi) * (np.pi / max(usual, 1e-9)))
 
 
 def distance_field(surfels: Surfels, dimensions: tuple[float, float, float]) -> Field:
@@ -102,26 +109,31 @@ def distance_field(surfels: Surfels, dimensions: tuple[float, float, float]) -> 
     x, y, z = dimensions
     origin = np.array([-x / 2, -y / 2, 0.0]) - 1.5 * VOXEL
     shape = np.ceil((np.array([x, y, z]) + 3 * VOXEL) / VOXEL).astype(int) + 1
-    empty = Field(np.zeros(shape, np.float32), origin)
+    blank = np.zeros(shape, np.float32)
     solid = np.zeros(shape, bool)
-    solid[tuple(empty.index(surfels.points).T)] = True
-    axes = [origin[i] + VOXEL * np.arange(shape[i]) for i in range(3)]
+    solid[tuple(Field(blank, blank, origin).index(surfels.points).T)] = True
+    things = solid.copy()
     for axis, (low, high) in enumerate([(-x / 2, x / 2), (-y / 2, y / 2), (0.0, z)]):
-        outside = (axes[axis] < low) | (axes[axis] > high)
-        solid[(slice(None),) * axis + (outside,)] = True
+        at = origin[axis] + VOXEL * np.arange(shape[axis])
+        solid[(slice(None),) * axis + ((at < low) | (at > high),)] = True
+        things[(slice(None),) * axis + ((at < low + VOXEL) | (at > high - VOXEL),)] = False
+    return Field(_distance(solid), _distance(things), origin)
+
+
+def _distance(solid: NDArray[np.bool_]) -> Float32:
+    """Metres to the nearest solid voxel's surface, 0 in it; far where nothing is solid."""
+    if not solid.any():
+        return np.full(solid.shape, 1e3, np.float32)
     distance = ndimage.distance_transform_edt(~solid, sampling=VOXEL) - 0.5 * VOXEL
-    return Field(np.maximum(distance, 0.0).astype(np.float32), origin)
+    return np.maximum(distance, 0.0).astype(np.float32)
 
 
-def display(radiance: Float, areas: Float) -> Float:
-    """sRGB-coded colours (N, 3) of linear ``radiance`` (N, 3): exposure, then a filmic curve for each channel.
+def display(radiance: Float) -> Float:
+    """sRGB-coded colours (N, 3) of linear ``radiance`` (N, 3), in which a white surface in the usual light has 1.
 
-    The median over ``areas`` (N,) is brought to `MID_GREY`; bright colours grow pale, as on film.
+    Exposure, then a filmic curve for each channel: bright colours grow pale, as on film.
     """
-    luminance = radiance @ [0.2126, 0.7152, 0.0722]
-    order = np.argsort(luminance, kind="stable")
-    middle = order[np.searchsorted(np.cumsum(areas[order]), areas.sum() / 2)]
-    x = np.maximum(radiance, 0.0) * (MID_GREY / max(float(luminance[middle]), 1e-9))
+    x = np.maximum(radiance, 0.0) * EXPOSURE
     toe, shoulder = x * (x + FILM_TOE), x * (FILM_SHOULDER * x + FILM_SLOPE) + FILM_BASE
     colour = np.clip(toe / shoulder, 0.0, 1.0)
     return np.where(colour <= 0.0031308, 12.92 * colour, 1.055 * np.maximum(colour, 1e-9) ** (1 / 2.4) - 0.055)

@@ -192,7 +192,7 @@ def _painting(uv: Float, extent: tuple[float, float], points: Float, seed: int) 
     x, y = uv[:, 0] / extent[0], uv[:, 1] / extent[1]
     wobble = 0.12 * value_noise(np.stack([x * 3.0, y * 2.0], 1), seed)
     band = np.floor((y + wobble) * generator.integers(3, 6)).astype(np.int64)
-    image = _hue(np.asarray(hue + band * generator.uniform(0.3, 0.7)), np.asarray(0.28 + 0.12 * (band % 3)))
+    image = _hue(np.asarray(hue + band * generator.uniform(0.3, 0.7)), np.asarray(0.16 + 0.12 * (band % 3)))
     for _ in range(int(generator.integers(1, 4))):
         centre, radius = generator.uniform(0.2, 0.8, 2), generator.uniform(0.1, 0.24)
         inside = np.hypot(x - centre[0], (y - centre[1]) * extent[1] / extent[0]) < radius
@@ -202,7 +202,7 @@ def _painting(uv: Float, extent: tuple[float, float], points: Float, seed: int) 
 
 def _hue(angle: Float, level: Float) -> Float:
     phases = np.array([0.0, 2.1, 4.2])
-    return np.asarray(level[..., None] * (1 + 0.6 * np.cos(angle[..., None] - phases)), np.float64)
+    return np.asarray(level[..., None] * (1 + 0.42 * np.cos(angle[..., None] - phases)), np.float64)
 
 
 def _screen(uv: Float, extent: tuple[float, float], points: Float, seed: int) -> Float:

@@ -160,7 +160,7 @@ def _uncovered(structure: Surfels, room: Room, truth: WorldTruth) -> NDArray[np.
     ):
         local = (structure.points - flat.centre) @ upright(flat.yaw)
         seen &= ~(np.abs(local) < np.array(flat.size) / 2 + [-0.02, 0.05, -0.02]).all(axis=1)
-    seen &= ~((structure.points[:, 2] < SKIRTING - 0.01) & _on_a_wall(structure.points, room))
+    seen &= ~((structure.points[:, 2] < SKIRTING) & _on_a_wall(structure.points, room))
     for rug in (o for o in truth.objects if kind_of(o.noun).flat):
         local = (structure.points[:, :2] - rug.centre[:2]) @ rug.axes.T
         below = (np.abs(local) < np.array(rug.size[:2]) / 2 - 0.01).all(axis=1)
