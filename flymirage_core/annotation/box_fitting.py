@@ -36,7 +36,10 @@ TALL: Final = 1.35
 """Things that reach higher above the floor are seen from the front only, so their depth is guessed up to the wall."""
 SEEN_DEPTH: Final = 0.25
 """... but only where less than this of their depth was seen."""
-UNDER_CEILING: Final = 0.6
+UNDER_CEILING: Final = 1.2
+"""Metres: cords and chains are too thin to be seen."""
+MIN_HANGING: Final = 1.4
+"""Metres above the floor."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,13 @@ class Footprint:
     @property
     def area(self) -> float:
         return float(self.size[0] * self.size[1])
+
+    @property
+    def corners(self) -> Float64:
+        """(4, 2) world xy, counter-clockwise."""
+        c, s = np.cos(self.yaw), np.sin(self.yaw)
+        half = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * self.size / 2
+        return np.asarray(half @ np.array([[c, s], [-s, c]]) + self.centre)
 
     def local(self, points: Float32 | Float64) -> Float64:
         """(N, 2) plan coordinates of points (N, 2 or 3) along the rectangle's axes, from its centre."""
@@ -158,7 +168,7 @@ def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> Fitt
 
 
 def settle(boxes: Sequence[FittedBox], structure: RoomStructure) -> list[FittedBox]:
-    """Nothing floats: boxes go down to the support below them, unless they hang from the ceiling or on a wall."""
+    """Nothing floats: boxes go down to the support below them, or up to the ceiling that they hang from."""
     return [_settled(box, boxes, structure) for box in boxes]
 
 
@@ -166,8 +176,6 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
     floor = float(structure.floor_map.at(np.array([box.centre[:2]]))[0])
     if box.bottom - floor <= ON_FLOOR:
         return box
-    if structure.ceiling is not None and structure.ceiling - box.top < UNDER_CEILING and box.bottom - floor > 1.5:
-        return replace(box, hanging=True)
     support = floor
     for other in boxes:
         around = other.top > box.top and other.bottom < box.bottom
@@ -180,7 +188,16 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
         abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - min(box.size[:2]) / 2 < NEAR_WALL
         for w in structure.walls
     )
+    if not on_wall and gap > 0.3 and box.bottom - floor > MIN_HANGING and structure.ceiling_map is not None:
+        ceiling = float(structure.ceiling_map.at(np.array([box.centre[:2]]))[0])
+        if ceiling - box.top < UNDER_CEILING:
+            return replace(_between(box, box.bottom, ceiling), hanging=True)
     if gap <= 0.02 or gap >= MAX_SUPPORT_GAP or (on_wall and gap > 0.3):
         return box
-    x, y, z = box.centre
-    return replace(box, centre=(x, y, z - gap / 2), size=(box.size[0], box.size[1], box.size[2] + gap))
+    return _between(box, box.bottom - gap, box.top)
+
+
+def _between(box: FittedBox, bottom: float, top: float) -> FittedBox:
+    """The box with another bottom and top."""
+    x, y, _ = box.centre
+    return replace(box, centre=(x, y, (bottom + top) / 2), size=(box.size[0], box.size[1], top - bottom))

@@ -22,12 +22,11 @@ from flymirage_core.annotation.normals import surface_normals
 from flymirage_core.annotation.parts import PartSet, Surface
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.segmentation import (
-    MIN_OBJECT_POINTS,
     colour_parts,
     neighbour_edges,
     smoothed_colours,
-    split_standing,
 )
+from flymirage_core.annotation.supports import standing_things
 from flymirage_core.annotation.wall_objects import wall_objects
 from flymirage_core.rendering.views import View
 from flymirage_core.settings import AnnotationSettings
@@ -46,6 +45,7 @@ MAX_SIDE: Final = 4.5
 """Metres; larger things are a part of the building that was not recognised."""
 MIN_SIDE: Final = 0.08
 """Metres; a box whose longest side is less is noise."""
+MIN_OBJECT_POINTS: Final = 25
 DUPLICATE_IOU: Final = 0.5
 MIN_SUPPORT_POINTS: Final = 5
 """Points of an object that a view must hit to support it."""
@@ -75,7 +75,7 @@ class EmbeddedAnnotator:
         """The building, from a coarse cloud of views spread over the sequence."""
         step = max(1, len(frames) // STRUCTURE_FRAMES)
         cloud = fuse_points(frames[::step], STRUCTURE_VOXEL, STRUCTURE_RANGE)
-        square = fuse_points([square_only(frame) for frame in frames], STRUCTURE_VOXEL, STRUCTURE_RANGE)
+        square = fuse_points([square_only(frame) for frame in frames[::step]], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
         return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL)
 
@@ -103,7 +103,6 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     objects = np.flatnonzero(~structure.contains(cloud.points))
     surface = _surface(cloud[objects], structure, voxel)
     parts = colour_parts(surface)
-    split_standing(parts)
     merge_parts(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure)
     boxes = [box for box in boxes if _is_object(box, structure)]
@@ -120,12 +119,16 @@ def _solid_cloud(cloud: FusedPoints, structure: RoomStructure, frames: Sequence[
 
 
 def _surface(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> Surface:
+    normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS)
     edges = neighbour_edges(cloud.voxels)
+    things = standing_things(cloud.points, normals, edges, structure.floor, structure.yaw)
+    edges = edges[things[edges[:, 0]] == things[edges[:, 1]]]
     colours = smoothed_colours(shading_free(to_lab(cloud.colours)), edges) if len(cloud) else cloud.colours
     return Surface(
         points=cloud.points,
         colours=colours,
-        normals=surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS),
+        normals=normals,
+        things=things,
         edges=edges,
         steps=colour_step(colours[edges[:, 0]], colours[edges[:, 1]]),
         voxel=voxel,

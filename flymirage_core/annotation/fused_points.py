@@ -25,10 +25,11 @@ MIN_ALPHA: Final = 0.6
 MAX_DISPARITY_CURVATURE: Final = 0.045
 """Relative difference of 1/z from its 3x3 mean beyond which a pixel lies on a depth edge. Planes are linear in 1/z, so
 grazing floors pass and flying pixels do not."""
-MIN_SQUARENESS: Final = 0.2
-"""Cosine between the optical axis and a surface's normal below which depth is not believed: a splat's depth is that of its
-middle, and the nearer ones hide the others, so surfaces seen askance come out too near, by up to a splat's radius."""
+MIN_INCIDENCE: Final = 0.2
+"""Cosine between a pixel's ray and its surface's normal below which depth is not believed."""
 SQUARE: Final = 0.96
+"""Cosine between optical axis and normal from which a surface is seen squarely. A splat's depth is that of its middle and the
+nearer ones hide the others, so surfaces at a slant come out too near, by up to a splat's radius."""
 NEAREST_WEIGHT_RANGE: Final = 0.5
 """Metres; pixels weigh 1/range^2, those nearer than this all the same."""
 
@@ -45,7 +46,7 @@ class Frame:
     camera: Camera
     rgb: NDArray[np.uint8]  # (H, W, 3)
     depth: Float32  # (H, W) z-depth, metres, 0 = no return
-    squareness: Float32  # (H, W) cosine between optical axis and surface normal, 0 where the depth is not to be trusted
+    incidence: Float32  # (H, W) cosine between ray and surface normal, 0 where the depth is not to be trusted
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,13 +76,13 @@ def frame_of(view: View) -> Frame:
     disparity = np.where(some, 1 / np.maximum(depth, MIN_DEPTH), 0).astype(np.float32)
     curvature = np.abs(cv2.blur(disparity, (3, 3)) - disparity) * depth
     inside = cv2.erode(some.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-    squareness = _squareness(disparity, view.camera.intrinsics)
-    trusted = inside & (curvature < MAX_DISPARITY_CURVATURE) & (squareness > MIN_SQUARENESS)
-    return Frame(view.camera, picture.rgb, depth, np.where(trusted, squareness, 0).astype(np.float32))
+    incidence = _plane_angles(disparity, view.camera.intrinsics)[0]
+    trusted = inside & (curvature < MAX_DISPARITY_CURVATURE) & (incidence > MIN_INCIDENCE)
+    return Frame(view.camera, picture.rgb, depth, np.where(trusted, incidence, 0).astype(np.float32))
 
 
-def _squareness(disparity: Float32, k: Intrinsics) -> Float32:
-    """(H, W) cosine between the optical axis, or the pixel's ray r if that is less, and its surface's normal n.
+def _plane_angles(disparity: Float32, k: Intrinsics) -> tuple[Float32, Float32]:
+    """(H, W) cosines between each pixel's surface normal n and its ray r, and between n and the optical axis.
 
     A plane n . x = d has disparity (n . r) / d, linear in the pixel; so the gradient of disparity gives n / d.
     """
@@ -91,14 +92,15 @@ def _squareness(disparity: Float32, k: Intrinsics) -> Float32:
     y = ((np.arange(k.height, dtype=np.float32) + 0.5 - k.cy) / k.fy)[:, None]  # (H, 1)
     nx, ny = across * k.fx, down * k.fy
     nz = disparity - nx * x - ny * y
-    length = np.sqrt(nx * nx + ny * ny + nz * nz)
-    along_ray = disparity / np.sqrt(x * x + y * y + 1)
-    return np.asarray(np.minimum(np.abs(nz), along_ray) / np.maximum(length, 1e-9), np.float32)
+    length = np.maximum(np.sqrt(nx * nx + ny * ny + nz * nz), 1e-9)
+    return disparity / (length * np.sqrt(x * x + y * y + 1)), np.abs(nz) / length
 
 
 def square_only(frame: Frame) -> Frame:
     """The frame with trust in those pixels only whose surface faces the camera squarely: few, but without bias."""
-    return replace(frame, squareness=np.where(frame.squareness > SQUARE, frame.squareness, 0).astype(np.float32))
+    disparity = np.where(frame.depth > 0, 1 / np.maximum(frame.depth, MIN_DEPTH), 0).astype(np.float32)
+    square = _plane_angles(disparity, frame.camera.intrinsics)[1] > SQUARE
+    return replace(frame, incidence=np.where(square, frame.incidence, 0).astype(np.float32))
 
 
 def frames_of(views: Iterable[View]) -> list[Frame]:
@@ -110,7 +112,7 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
     """Average the trusted pixels of all frames in voxels of edge ``voxel`` metres.
 
     Only pixels within ``max_distance`` metres of their own optical centre enter: the paper's d_th1 (section III-B). Colour
-    and place are means weighted by (squareness / range)^2: splat depth errs askance, and by a share of the range.
+    and place are means weighted by (incidence / range)^2: splat depth errs askance, and by a share of the range.
     """
     slots = np.full(1 << 16, -1, np.int64)  # open-addressing hash table: row of each key
     keys = np.empty(1 << 15, np.int64)
@@ -126,7 +128,7 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
             _rehash(keys, count, slots)
         k, pose = frame.camera.intrinsics, frame.camera.T_world_camera
         count = _add_frame(
-            frame.rgb, frame.depth, frame.squareness, np.array([k.fx, k.fy, k.cx, k.cy]), np.ascontiguousarray(pose),
+            frame.rgb, frame.depth, frame.incidence, np.array([k.fx, k.fy, k.cx, k.cy]), np.ascontiguousarray(pose),
             voxel, min(max_distance, 1e6), index, slots, keys, rows, last, count,
         )  # fmt: skip
     return _collected(keys[:count], rows[:count])
@@ -172,7 +174,7 @@ def _rehash(keys: NDArray[np.int64], count: int, slots: NDArray[np.int64]) -> No
 def _add_frame(
     rgb: NDArray[np.uint8],  # (H, W, 3)
     depth: Float32,  # (H, W)
-    squareness: Float32,  # (H, W) 0 = not trusted
+    incidence: Float32,  # (H, W) 0 = not trusted
     lens: NDArray[np.float64],  # fx, fy, cx, cy
     pose: NDArray[np.float64],  # (4, 4) T_world_camera
     voxel: float,
@@ -187,7 +189,7 @@ def _add_frame(
     """Add a frame's trusted pixels to the table; the new number of rows."""
     for v in range(depth.shape[0]):
         for u in range(depth.shape[1]):
-            if squareness[v, u] <= 0:
+            if incidence[v, u] <= 0:
                 continue
             x = (u + 0.5 - lens[2]) / lens[0]
             y = (v + 0.5 - lens[3]) / lens[1]
@@ -211,7 +213,7 @@ def _add_frame(
                 last[row] = -1
                 count += 1
             near = max(reach, NEAREST_WEIGHT_RANGE)
-            w = squareness[v, u] * squareness[v, u] / (near * near)
+            w = incidence[v, u] * incidence[v, u] / (near * near)
             for a in range(3):
                 direction = pose[a, 0] * x + pose[a, 1] * y + pose[a, 2]
                 rows[row, a] += w * (direction * z + pose[a, 3])

@@ -55,7 +55,12 @@ def footprint_corners(box: GravityAlignedBox) -> NDArray[np.float64]:
 
 def footprint_overlap(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
     """Square metres that the two plans share."""
-    return float(_convex_overlap(footprint_corners(a), footprint_corners(b)))
+    return convex_overlap(footprint_corners(a), footprint_corners(b))
+
+
+def convex_overlap(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    """Area shared by two convex polygons (A, 2) and (B, 2), counter-clockwise, of at most eight corners together."""
+    return float(_convex_overlap(a, b))
 
 
 def yaw_iou(a: GravityAlignedBox, b: GravityAlignedBox) -> float:

@@ -1,7 +1,6 @@
 """Parts joined to objects: one rule a function, each for a kind of thing that colour alone falls apart.
 
-No rule joins through a support: what stands on a broad level face stays its own object, unless it has the colour of what
-carries it and was not cut off it before.
+No rule joins what stands on different supports (`Part.thing`), but for lamps whose pole was lost.
 """
 
 from typing import Final
@@ -11,9 +10,10 @@ from scipy.spatial import cKDTree
 
 from flymirage_core.annotation.colours import colour_step
 from flymirage_core.annotation.parts import Part, PartSet
-from flymirage_core.annotation.segmentation import SUPPORT_AREA
 
 MAX_ROUNDS: Final = 12
+SUPPORT_AREA: Final = 0.13
+"""Square metres from which a level face carries things."""
 SAME_COLOUR: Final = 9.0
 """Colour step up to which touching parts are one thing."""
 IDENTICAL_COLOUR: Final = 3.0
@@ -55,7 +55,7 @@ def _join_touching(parts: PartSet) -> bool:
         step = float(colour_step(a.colour, b.colour))
         stands = _stands_on(upper, lower)
         if (
-            _same_thing(a, b, step, contact, stands and (step > IDENTICAL_COLOUR or upper.standing))
+            _same_thing(a, b, step, contact, stands and step > IDENTICAL_COLOUR)
             or _piece_inside(a, b, stands, upper)
             or (not stands and _stacked(lower, upper))
         ):
@@ -152,7 +152,7 @@ def _join_lost_joints(parts: PartSet) -> bool:
 
 def _nearly_touching(a: Part, b: Part) -> bool:
     gap = np.maximum(0, np.maximum(a.lower - b.upper, b.lower - a.upper))
-    if np.linalg.norm(gap) > JOINT_GAP or colour_step(a.colour, b.colour) > SIMILAR_COLOUR:
+    if a.thing != b.thing or np.linalg.norm(gap) > JOINT_GAP or colour_step(a.colour, b.colour) > SIMILAR_COLOUR:
         return False
     if min(a.footprint.size.max(), b.footprint.size.max()) > LARGE:
         return False
@@ -179,7 +179,11 @@ def _join_panels(parts: PartSet) -> None:
 
 
 def _attached(panel: Part, body: Part) -> bool:
-    if not body.lower[2] - 0.05 < panel.lower[2] < body.upper[2] + 0.12 or panel.upper[2] < body.upper[2]:
+    if (
+        panel.thing != body.thing
+        or not body.lower[2] - 0.05 < panel.lower[2] < body.upper[2] + 0.12
+        or panel.upper[2] < body.upper[2]
+    ):
         return False
     plan = body.footprint
     away = np.abs(plan.local(panel.footprint.centre[None])[0])  # (2,)
@@ -209,4 +213,5 @@ def _join_legs(parts: PartSet) -> None:
 
 def _over(body: Part, leg: Part) -> bool:
     high_enough = body.upper[2] > leg.upper[2] - 0.03 and body.clearance <= 1.3
-    return bool(len(body) >= 2 * len(leg) and high_enough and body.footprint.share_inside(leg.points, 0.06) > 0.6)
+    alike = body.thing == leg.thing and len(body) >= 2 * len(leg)
+    return bool(alike and high_enough and body.footprint.share_inside(leg.points, 0.06) > 0.6)

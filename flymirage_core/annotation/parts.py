@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.annotation.box_fitting import Footprint, fit_footprint
+from flymirage_core.annotation.supports import LEVEL
 
 Float32 = NDArray[np.float32]
 Index = NDArray[np.intp]
@@ -19,7 +20,8 @@ class Surface:
     points: Float32  # (N, 3)
     colours: Float32  # (N, 3) shading-free Lab
     normals: Float32  # (N, 3), zero where unknown
-    edges: Index  # (E, 2) neighbouring points (26-neighbourhood of voxels)
+    things: Index  # (N,) number of the thing on a support that a point belongs to, 0 = stands on the floor
+    edges: Index  # (E, 2) neighbouring points (26-neighbourhood of voxels) of the same thing
     steps: Float32  # (E,) colour step along each edge
     voxel: float
     floor: float
@@ -29,10 +31,10 @@ class Surface:
 class Part:
     """Some points of a surface that belong together. Its measures are worked out when asked for."""
 
-    def __init__(self, surface: Surface, members: Index, standing: bool = False) -> None:
+    def __init__(self, surface: Surface, members: Index) -> None:
         self.surface = surface
         self.members = members  # (M,) ascending
-        self.standing = standing  # was cut off the surface it stands on, and must not be joined to it again
+        self.thing = int(surface.things[members[0]])  # all members' number
 
     def __len__(self) -> int:
         return len(self.members)
@@ -87,10 +89,6 @@ class Part:
         return float(pairs[k]) * self.surface.voxel**2, float(edges[k]) + 0.04
 
 
-LEVEL = 0.85
-"""n_z from which a point lies on a level face that looks up."""
-
-
 class PartSet:
     """All parts of a surface; joining keeps the larger part's number."""
 
@@ -101,7 +99,7 @@ class PartSet:
         starts = np.searchsorted(labels[order], np.arange(labels.max() + 2)) if len(labels) else np.zeros(1, int)
         groups = [order[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
         self.parts = {k: Part(surface, members) for k, members in enumerate(groups) if len(members) >= min_points}
-        self._next = len(groups)
+        self._count = len(groups)
 
     def join(self, i: int, j: int) -> int:
         """Make parts ``i`` and ``j`` one; its number."""
@@ -109,28 +107,18 @@ class PartSet:
             i, j = j, i
         a, b = self.parts[i], self.parts.pop(j)
         self.labels[b.members] = i
-        standing = a.standing and len(a) > 0.5 * len(b)
-        self.parts[i] = Part(self.surface, np.sort(np.concatenate([a.members, b.members])), standing)
+        self.parts[i] = Part(self.surface, np.sort(np.concatenate([a.members, b.members])))
         return i
-
-    def cut(self, i: int, members: Index) -> int:
-        """Make some members of part ``i`` a part of their own that stands on it; its number."""
-        number, self._next = self._next, self._next + 1
-        self.labels[members] = number
-        rest = np.setdiff1d(self.parts[i].members, members)
-        self.parts[i] = Part(self.surface, rest, self.parts[i].standing)
-        self.parts[number] = Part(self.surface, np.sort(members), standing=True)
-        return number
 
     def contacts(self) -> list[tuple[int, int, int]]:
         """(i, j, number of edges between them) for all parts that touch, the longest contact first."""
         a, b = self.labels[self.surface.edges[:, 0]], self.labels[self.surface.edges[:, 1]]
         different = a != b
         low, high = np.minimum(a, b)[different].astype(np.int64), np.maximum(a, b)[different].astype(np.int64)
-        pairs, counts = np.unique(low * self._next + high, return_counts=True)
+        pairs, counts = np.unique(low * self._count + high, return_counts=True)
         order = np.argsort(-counts, kind="stable")
         found = [
-            (int(p // self._next), int(p % self._next), int(c))
+            (int(p // self._count), int(p % self._count), int(c))
             for p, c in zip(pairs[order], counts[order], strict=True)
         ]
         return [(i, j, c) for i, j, c in found if i in self.parts and j in self.parts]

@@ -63,7 +63,9 @@ class Wall:
     offset: float
     start: float  # extent along `direction`
     end: float
-    back: float  # offset of the plane as seen straight on; `offset` is that of most of its points, which come out nearer
+    back: (
+        float  # offset of the plane as seen straight on; `offset` is that of most of its points, which come out nearer
+    )
 
     @property
     def direction(self) -> Float64:

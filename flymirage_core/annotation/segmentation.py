@@ -1,4 +1,4 @@
-"""The surface cut in parts of one colour, and things cut off the broad surface of the same colour that they stand on."""
+"""The surface cut in parts of one colour."""
 
 from typing import Final
 
@@ -6,11 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
-from flymirage_core.annotation.box_fitting import Footprint, fit_footprint
 from flymirage_core.annotation.colours import colour_step
-from flymirage_core.annotation.parts import LEVEL, PartSet, Surface
+from flymirage_core.annotation.parts import PartSet, Surface
 
 Float32 = NDArray[np.float32]
 Index = NDArray[np.intp]
@@ -27,14 +25,6 @@ STRICTER: Final = (0.6, 0.38, 0.25)
 MIN_OVERSIZE_POINTS: Final = 400
 MIN_PART_POINTS: Final = 12
 """Smaller parts go to the neighbour of the most similar colour."""
-MIN_OBJECT_POINTS: Final = 25
-SUPPORT_AREA: Final = 0.13
-"""Square metres from which a level face carries things."""
-MIN_SUPPORT_HEIGHT: Final = 0.2
-"""Metres above the floor."""
-MIN_STANDING_HEIGHT: Final = 0.05
-MAX_STANDING_SHARE: Final = 0.6
-"""Of the face's area: what covers more of it is its upper part."""
 
 
 def neighbour_edges(voxels: NDArray[np.int64]) -> Index:
@@ -88,17 +78,6 @@ def colour_parts(surface: Surface) -> PartSet:
     return PartSet(surface, labels, MIN_PART_POINTS)
 
 
-def split_standing(parts: PartSet) -> None:
-    """Cut off what stands on a broad level face of its own part: a dark monitor on a dark desk."""
-    for number in sorted(parts.parts):
-        part = parts.parts[number]
-        if len(part) < 150 or part.extent[:2].max() < 0.4:
-            continue
-        for height, face in _level_faces(part.surface, part.members):
-            plan = fit_footprint(parts.surface.points[face], parts.surface.yaw, trim=1.0)
-            _cut_standing(parts, number, height, plan)
-
-
 def _components(n: int, edges: Index) -> Index:
     graph = coo_matrix((np.ones(len(edges), np.int8), (edges[:, 0], edges[:, 1])), shape=(n, n))
     return np.asarray(connected_components(graph, directed=False)[1], np.intp)
@@ -139,41 +118,3 @@ def _small_absorbed(surface: Surface, labels: Index) -> Index:
     for _ in range(4):  # chains of small parts
         goal = goal[goal]
     return _renumbered(goal[labels])
-
-
-def _level_faces(surface: Surface, members: Index) -> list[tuple[float, Index]]:
-    """(upper edge of its height, points) of a part's broad level faces, the broadest first."""
-    up = members[surface.normals[members, 2] > LEVEL]
-    cell = surface.voxel**2
-    if len(up) * cell < SUPPORT_AREA:
-        return []
-    heights = surface.points[up, 2]
-    counts, edges = np.histogram(heights, np.arange(heights.min() - 0.03, heights.max() + 0.07, 0.03))
-    pairs = counts[:-1] + counts[1:]
-    faces = []
-    for j in np.argsort(-pairs, kind="stable")[:6]:
-        peak = pairs[j] == pairs[max(0, j - 1) : j + 2].max()
-        if pairs[j] * cell >= SUPPORT_AREA and edges[j] - surface.floor > MIN_SUPPORT_HEIGHT and peak:
-            faces.append((float(edges[j + 2]), up[(heights >= edges[j]) & (heights < edges[j + 2])]))
-    return faces
-
-
-def _cut_standing(parts: PartSet, number: int, height: float, plan: Footprint) -> None:
-    """Cut what rises above a face of part ``number``, well inside of its plan, into parts of their own."""
-    surface = parts.surface
-    members = parts.parts[number].members
-    high = members[surface.points[members, 2] > height + 0.015]
-    if len(high) < MIN_OBJECT_POINTS:
-        return
-    pairs = cKDTree(surface.points[high]).query_pairs(1.8 * surface.voxel, output_type="ndarray")
-    clusters = _components(len(high), pairs)
-    for k in np.flatnonzero(np.bincount(clusters) >= MIN_OBJECT_POINTS):
-        cluster = high[clusters == k]
-        cloud = surface.points[cluster]
-        local = plan.local(cloud)  # (M, 2)
-        inside = (np.abs(local) < plan.size / 2 - 0.015).all(axis=1).mean()
-        area = float(np.maximum(np.ptp(local, axis=0), 0.03).prod())
-        stands = cloud[:, 2].min() <= height + 0.12 and np.ptp(cloud[:, 2]) >= MIN_STANDING_HEIGHT
-        rest = len(parts.parts[number]) - len(cluster)
-        if stands and inside >= 0.93 and area <= MAX_STANDING_SHARE * plan.area and rest >= MIN_PART_POINTS:
-            parts.cut(number, cluster)

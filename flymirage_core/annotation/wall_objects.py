@@ -91,7 +91,10 @@ def _things(seen: NDArray[np.bool_], image: Float32) -> NDArray[np.intp]:
     """
     numbers = np.arange(seen.size).reshape(seen.shape)
     pairs = []
-    for a, b in (((slice(1, None), slice(None)), (slice(None, -1), slice(None))), ((slice(None), slice(1, None)), (slice(None), slice(None, -1)))):
+    for a, b in (
+        ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
+        ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
+    ):
         alike = seen[a] & seen[b] & (colour_step(image[a], image[b]) < MAX_PAINT_STEP)
         pairs.append(np.stack([numbers[a][alike], numbers[b][alike]], axis=1))
     edges = np.concatenate(pairs)
