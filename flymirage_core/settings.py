@@ -190,8 +190,10 @@ class Settings(BaseSettings):
     profile: Literal["offline"] = "offline"
     store: str = ".flymirage/store"
     """A local path or any fsspec URL."""
+    renderer: Literal["auto", "cpu", "gsplat"] = "auto"
+    """Who renders: "gsplat" needs a CUDA card and the ``[gpu]`` extra; "auto" takes it where both are there."""
     threads: int = Field(default=0, ge=0)
-    """Rendering threads; 0 = all cores."""
+    """Rendering threads of the CPU renderer; 0 = all cores."""
 
     generation: GenerationSettings = GenerationSettings()
     cleaning: CleaningSettings = CleaningSettings()

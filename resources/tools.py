@@ -7,6 +7,7 @@ from flymirage_core.annotation.embedded import EmbeddedAnnotator
 from flymirage_core.language.judge import FrameJudge, MeasuredJudge
 from flymirage_core.language.prompter import OfflinePrompter, Prompter
 from flymirage_core.rendering.cpu import CpuRasterizer
+from flymirage_core.rendering.gsplat_backend import GsplatRasterizer, why_unusable
 from flymirage_core.rendering.rasterizer import Rasterizer
 from flymirage_core.scene.writer import OfflineSceneWriter, SceneWriter
 from flymirage_core.settings import Settings
@@ -28,8 +29,8 @@ class Tools:
 
 
 def choose_tools(settings: Settings) -> Tools:
-    """The tools of ``settings.profile``; ``offline`` needs no network, no key and no GPU."""
-    rasterizer = CpuRasterizer(settings.threads)
+    """The tools of ``settings.profile``; ``offline`` needs no network, no key and no GPU, but uses a GPU if it can."""
+    rasterizer = choose_rasterizer(settings)
     return Tools(
         scene_writer=OfflineSceneWriter(),
         image_painter=OfflinePainter(rasterizer, settings.generation),
@@ -39,3 +40,9 @@ def choose_tools(settings: Settings) -> Tools:
         frame_judge=MeasuredJudge(settings.verdict, settings.planner),
         prompter=OfflinePrompter(),
     )
+
+
+def choose_rasterizer(settings: Settings) -> Rasterizer:
+    """The back end that ``settings.renderer`` names; raises `InputError` if it is gsplat's and that cannot be used."""
+    wants_gsplat = settings.renderer == "gsplat" or (settings.renderer == "auto" and not why_unusable())
+    return GsplatRasterizer() if wants_gsplat else CpuRasterizer(settings.threads)
