@@ -6,8 +6,8 @@ from pathlib import Path
 
 import dagster as dg
 
-PID_TAG = "flymirage/pid"
-BOOT_TAG = "flymirage/boot"
+PID_TAG = ".dagster/flymirage_pid"  # the prefix keeps them out of the UI
+BOOT_TAG = ".dagster/flymirage_boot"
 
 
 def prepare_home() -> Path:

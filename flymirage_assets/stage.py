@@ -107,7 +107,7 @@ class ProductAsset:
         current = store.current(self.name, scene)
         if current is not None and current.input_hash == input_hash and store.is_whole(current):
             log(f"{self.name} of {scene}: inputs, code and settings are unchanged, nothing to do")
-            return Commit(current)
+            return Commit(current, preview=store.preview(current))
         started = time.perf_counter()
         report = self._listener(log)
         report("", 0, 1)

@@ -116,6 +116,11 @@ class Store:
                 )
         return folder
 
+    def preview(self, record: ProductRecord) -> bytes | None:
+        """The picture kept beside a product, if there is one."""
+        path = self._product(record.asset, record.scene) / record.digest / PREVIEW_NAME
+        return path.read_bytes() if path.exists() else None
+
     def is_whole(self, record: ProductRecord) -> bool:
         """True if every file of the record is there with its size."""
         try:

@@ -68,6 +68,11 @@ def test_a_second_run_finds_nothing_to_do(grown: Project) -> None:
     outcome = grown.flymirage("make", SCENE)
     assert outcome.returncode == 0, outcome.stdout
     assert {a: grown.store.current(a, SCENE) for a in SCENE_PRODUCTS} == before
+    with dg.DagsterInstance.from_config(str(grown.folder / ".flymirage" / "dagster")) as instance:
+        event = instance.get_latest_materialization_event(dg.AssetKey("boxes"))
+    assert event is not None and event.asset_materialization is not None
+    metadata = event.asset_materialization.metadata
+    assert metadata["reused"].value is True and "data:image/jpeg;base64," in str(metadata["picture"].value)
 
 
 def test_a_planner_change_rebuilds_trajectories_and_what_follows_and_nothing_else(

@@ -79,11 +79,10 @@ def test_the_same_content_has_the_same_digest_and_can_be_committed_twice(store: 
     assert (store.folder("notes", "flat") / "note.txt").read_text() == "same"
 
 
-def test_the_preview_is_beside_the_product_but_not_in_its_hash(tmp_path: Path) -> None:
-    store = open_store(str(tmp_path))
+def test_the_preview_is_beside_the_product_but_not_in_its_hash(store: Store) -> None:
     record = commit(store, "hello")
     assert PREVIEW_NAME not in record.files
-    assert (store.folder("notes", "flat") / PREVIEW_NAME).read_bytes() == b"jpeg"
+    assert store.preview(record) == b"jpeg"
 
 
 def test_a_missing_product_says_what_to_do(store: Store) -> None:
