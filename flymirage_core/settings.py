@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
 Positive = Annotated[float, Field(gt=0)]
+NotNegative = Annotated[float, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
 
 
@@ -137,6 +138,41 @@ class PlannerSettings(Section):
     """Hz at which flight states are recorded."""
 
 
+class QuadrotorSettings(Section):
+    """The drone that every flight is checked for; defaults are those of a small research quadrotor.
+
+    Mass, inertia and arm are those published for the AscTec Hummingbird; drag is of the size that Faessler et al. (RA-L
+    2018) identified; thrust and lag are on the weak side, so that other drones can fly what this one can.
+    """
+
+    mass: Positive = 0.5
+    """kg"""
+    inertia: tuple[Positive, Positive, Positive] = (3.65e-3, 3.68e-3, 7.03e-3)
+    """kg m^2 about the body's x, y, z."""
+    arm: Positive = 0.17
+    """From the centre of mass to each rotor; they stand in an X."""
+    torque_per_thrust: Positive = 0.0244
+    """Metres: drag torque of a rotor about its axis for each newton of its thrust."""
+    drag: tuple[NotNegative, NotNegative, NotNegative] = (0.5, 0.4, 0.1)
+    """1/s: linear drag per mass along the body's x, y, z."""
+    thrust_to_weight: Annotated[float, Field(gt=1)] = 2.0
+    """Most thrust of all rotors together, as a multiple of the weight."""
+    idle_share: NotNegative = 0.05
+    """Least thrust of a rotor, as a share of its most: rotors do not stop in flight."""
+    rotor_lag: Positive = 0.03
+    """Seconds: time constant of a rotor's thrust."""
+    max_position_rms: Positive = 0.05
+    """A flight that the simulated drone strays from by more than this is rejected ..."""
+    max_attitude_rms_deg: Positive = 3.0
+    """... and so is one whose attitude it misses by more than this."""
+
+    @property
+    def rotor_limits(self) -> tuple[float, float]:
+        """Least and most thrust of one rotor, newtons."""
+        most = self.thrust_to_weight * self.mass * 9.81 / 4
+        return self.idle_share * most, most
+
+
 class FrameSettings(Section):
     """The drone's camera and its video."""
 
@@ -204,6 +240,7 @@ class Settings(BaseSettings):
     annotation: AnnotationSettings = AnnotationSettings()
     tasks: TaskSettings = TaskSettings()
     planner: PlannerSettings = PlannerSettings()
+    quadrotor: QuadrotorSettings = QuadrotorSettings()
     frames: FrameSettings = FrameSettings()
     verdict: VerdictSettings = VerdictSettings()
 

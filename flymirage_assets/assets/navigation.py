@@ -30,12 +30,17 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return generate_task_sets(grid, boxes, world.centre, stage.settings.tasks, stage.rng("task_sets"))
 
     @product_asset(
-        version="1", group=group, settings=settings, sections=["occupancy", "planner"], draw=previews.trajectories
+        version="2",
+        group=group,
+        settings=settings,
+        sections=["occupancy", "planner", "quadrotor"],
+        draw=previews.trajectories,
     )
     def trajectories(stage: Stage, world: World, boxes: BoxMap, task_sets: TaskSets) -> Trajectories:
         """EGO-Planner flights from target to target: 6-DoF states with velocity, body rates and clearance."""
         grid = occupancy_from_splats(world.cloud, world.centre, stage.settings.occupancy)
-        return fly_task_sets(task_sets, grid, boxes, stage.settings.planner, stage.rng("trajectories"))
+        chosen = stage.settings
+        return fly_task_sets(task_sets, grid, boxes, chosen.planner, chosen.quadrotor, stage.rng("trajectories"))
 
     @product_asset(
         version="1", group=group, settings=settings, sections=["frames"], tools=["rasterizer"], draw=previews.frames

@@ -54,6 +54,7 @@ def lerobot_conventions() -> dict[str, Any]:
         },
         "sim.yaw": "rad, ENU: the yaw of the action's formulas",
         "sim.acceleration": "m/s^2, world, without gravity",
+        "sim.imu": "ideal IMU at the drone's centre, FLU: specific force m/s^2 (+9.81 along z at rest), rates rad/s",
         "sim.velocity_body": "vx, vy, vz in m/s in the yaw frame (FLU), yaw rate in rad/s",
         "sim.pose_from_start": "x, y, z in m and yaw in rad relative to the first frame, in its yaw frame",
         "sim.clearance": "m from the drone's centre to the nearest voxel that may not be flown in",

@@ -21,6 +21,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "action": ACTION_NAMES,
     "sim.yaw": ("yaw",),
     "sim.acceleration": ("ax", "ay", "az"),
+    "sim.imu": ("fx", "fy", "fz", "wx", "wy", "wz"),
     "sim.velocity_body": ("vx", "vy", "vz", "yaw_rate"),
     "sim.pose_from_start": ("x", "y", "z", "yaw"),
     "sim.clearance": ("clearance",),
@@ -51,6 +52,7 @@ def flight_columns(flight: Flight, frames: FlightFrames, target: ObjectBox) -> d
         "action": action,
         "sim.yaw": wrapped(yaw)[:, None],
         "sim.acceleration": _interpolated(times, flight.times, flight.accelerations),
+        "sim.imu": np.column_stack([_interpolated(times, flight.times, flight.specific_forces), state[:, 10:13]]),
         "sim.velocity_body": np.column_stack([into_yaw_frame(velocity, yaw), yaw_rate]),
         "sim.pose_from_start": np.column_stack(
             [into_yaw_frame(position - position[0], np.full(len(times), yaw[0])), wrapped(yaw - yaw[0])]

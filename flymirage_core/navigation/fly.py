@@ -1,5 +1,6 @@
 """`fly_task_sets`: every task planned, given attitude and yaw, sampled and measured."""
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -7,15 +8,16 @@ from numpy.typing import NDArray
 
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.errors import PlanningError
-from flymirage_core.navigation.flatness import attitude_and_rates
+from flymirage_core.navigation.flatness import BodyMotion, FlatMotion, body_motion
 from flymirage_core.navigation.flight_check import exact_clearance
 from flymirage_core.navigation.flight_space import FlightSpace
 from flymirage_core.navigation.planner import PLANNER, PlannedFlight, plan_flight_in
 from flymirage_core.navigation.task_sets import Task, TaskSets
+from flymirage_core.navigation.tracking import TrackingMeasures, track
 from flymirage_core.navigation.trajectories import Flight, FlightReport, RejectedTask, Trajectories
 from flymirage_core.navigation.yaw import SUBSTEPS, plan_yaw
 from flymirage_core.occupancy.grid import OccupancyGrid
-from flymirage_core.settings import PlannerSettings
+from flymirage_core.settings import PlannerSettings, QuadrotorSettings
 
 Float64 = NDArray[np.float64]
 
@@ -28,13 +30,16 @@ def fly_task_sets(
     grid: OccupancyGrid,
     boxes: BoxMap,
     settings: PlannerSettings,
+    quadrotor: QuadrotorSettings,
     generator: np.random.Generator,
 ) -> Trajectories:
     """Flies all tasks, each set in one run: a leg begins where, and looking as, the leg before it ended.
 
     A set's first leg begins looking along its flight. If a task is rejected the drone stays where it is, and the next
     task of the set is planned from there: its start is then the last point reached, not the rejected target point.
-    Each task has its own stream of random numbers, so one task's attempts change no other task's flight.
+    A flight that asks a rotor for more or less than it can give, or that the simulated quadrotor does not keep to, is
+    rejected like one that cannot be planned. Each task has its own stream of random numbers, so one task's attempts
+    change no other task's flight.
     """
     space = FlightSpace.of(grid, settings)
     flights: list[Flight] = []
@@ -43,28 +48,37 @@ def fly_task_sets(
     for task, stream in zip(task_sets, generator.spawn(len(task_sets)), strict=True):
         if task.set_index != set_index:
             set_index, position, yaw = task.set_index, np.array(task.start), None
+        target_centre = np.array(boxes.by_id(task.object_id).centre)
         try:
             planned = plan_flight_in(space, position, task.target_point, settings, stream)
+            states = _sampled(planned, target_centre, yaw, settings, quadrotor)
+            tracking = _flyable(states, quadrotor)
         except PlanningError as error:
             rejected.append(RejectedTask(task.set_index, task.leg_index, task.object_id, str(error)))
             continue
-        target_centre = np.array(boxes.by_id(task.object_id).centre)
-        flight = _recorded(len(flights), task, planned, target_centre, yaw, grid, settings)
-        flights.append(flight)
-        position, yaw = flight.positions[-1], float(flight.yaws[-1])
+        flights.append(_recorded(len(flights), task, planned, states, tracking, grid))
+        position, yaw = states.positions[-1], float(states.motion.yaw[-1])
     return Trajectories(tuple(flights), tuple(rejected))
 
 
-def _recorded(
-    flight_id: int,
-    task: Task,
+@dataclass(frozen=True, eq=False)
+class _States:
+    """A flight at the recorded times, with the hovers that its yaw needs."""
+
+    times: Float64  # (T,)
+    positions: Float64  # (T, 3)
+    motion: FlatMotion
+    body: BodyMotion
+
+
+def _sampled(
     planned: PlannedFlight,
     target_centre: Float64,
     first_yaw: float | None,
-    grid: OccupancyGrid,
     settings: PlannerSettings,
-) -> Flight:
-    """The flight's states at ``settings.state_rate``, with the hovers that its yaw needs, and their report."""
+    quadrotor: QuadrotorSettings,
+) -> _States:
+    """The planned flight at ``settings.state_rate``."""
     spline, rate = planned.spline, settings.state_rate
     count = round(spline.duration * rate)
     fine = spline.at(np.linspace(0, spline.duration, count * SUBSTEPS + 1))
@@ -74,21 +88,65 @@ def _recorded(
     position, velocity, acceleration, jerk = (spline.at(clock / rate, n) for n in range(HOVER_DERIVATIVES))
     for derivative in (velocity, acceleration, jerk):
         derivative[~moving] = 0.0
-    quaternions, body_rates = attitude_and_rates(acceleration, jerk, turn.yaws, turn.rates)
-    clearances = exact_clearance(grid, position)
+    motion = FlatMotion(velocity, acceleration, jerk, turn.yaws, turn.rates)
+    return _States(np.arange(len(clock)) / rate, position, motion, body_motion(motion, 1 / rate, quadrotor))
+
+
+def _flyable(states: _States, quadrotor: QuadrotorSettings) -> TrackingMeasures:
+    """How well the simulated quadrotor keeps to the states.
+
+    Raises:
+        PlanningError: it does not, or a rotor cannot do what they ask of it.
+    """
+    least, most = quadrotor.rotor_limits
+    low, high = states.body.rotor_thrusts.min(), states.body.rotor_thrusts.max()
+    if low < least or high > most:
+        raise PlanningError(
+            f"not flyable: rotors would give {low:.2f} to {high:.2f} N, they can give {least:.2f} to {most:.2f} N"
+        )
+    tracking = track(states.times, states.positions, states.motion.yaw, states.body.quaternions, quadrotor)
+    strayed, tilted = tracking.position_rms, np.degrees(tracking.attitude_rms)
+    if not strayed <= quadrotor.max_position_rms:
+        raise PlanningError(
+            f"not tracked: the simulated quadrotor strays by {strayed:.3f} m (RMS), "
+            f"{quadrotor.max_position_rms:g} m are allowed"
+        )
+    if not tilted <= quadrotor.max_attitude_rms_deg:
+        raise PlanningError(
+            f"not tracked: the simulated quadrotor is tilted away by {tilted:.2f} degrees (RMS), "
+            f"{quadrotor.max_attitude_rms_deg:g} are allowed"
+        )
+    return tracking
+
+
+def _recorded(
+    flight_id: int,
+    task: Task,
+    planned: PlannedFlight,
+    states: _States,
+    tracking: TrackingMeasures,
+    grid: OccupancyGrid,
+) -> Flight:
+    """The accepted flight with its report."""
+    clearances = exact_clearance(grid, states.positions)
     target_point = np.array(task.target_point)
-    measures = planned.measures
+    measures, motion, body = planned.measures, states.motion, states.body
     report = FlightReport(
-        duration=(len(clock) - 1) / rate,
+        duration=float(states.times[-1]),
         length=measures.length,
-        straight_distance=float(np.linalg.norm(target_point - position[0])),
+        straight_distance=float(np.linalg.norm(target_point - states.positions[0])),
         max_speed=measures.max_speed,
         max_acceleration=measures.max_acceleration,
         max_jerk=measures.max_jerk,
-        max_body_rate=float(np.linalg.norm(body_rates, axis=1).max()),
-        max_yaw_rate=float(np.abs(turn.rates).max()),
+        max_body_rate=float(np.linalg.norm(body.body_rates, axis=1).max()),
+        max_angular_acceleration=float(np.linalg.norm(body.angular_accelerations, axis=1).max()),
+        max_yaw_rate=float(np.abs(motion.yaw_rate).max()),
+        min_rotor_thrust=float(body.rotor_thrusts.min()),
+        max_rotor_thrust=float(body.rotor_thrusts.max()),
+        tracking_position_rms=tracking.position_rms,
+        tracking_attitude_rms=tracking.attitude_rms,
         min_clearance=min(measures.min_clearance, float(clearances.min())),
-        end_error=float(np.linalg.norm(position[-1] - target_point)),
+        end_error=float(np.linalg.norm(states.positions[-1] - target_point)),
         inflation=planned.inflation,
         planner=PLANNER,
         attempts=planned.attempts,
@@ -99,13 +157,16 @@ def _recorded(
         leg_index=task.leg_index,
         object_id=task.object_id,
         target_point=target_point,
-        times=np.arange(len(clock)) / rate,
-        positions=position,
-        velocities=velocity,
-        accelerations=acceleration,
-        quaternions=quaternions,
-        body_rates=body_rates,
-        yaws=np.angle(np.exp(1j * turn.yaws)),
+        times=states.times,
+        positions=states.positions,
+        velocities=motion.velocity,
+        accelerations=motion.acceleration,
+        quaternions=body.quaternions,
+        body_rates=body.body_rates,
+        angular_accelerations=body.angular_accelerations,
+        specific_forces=body.specific_forces,
+        rotor_thrusts=body.rotor_thrusts,
+        yaws=np.angle(np.exp(1j * motion.yaw)),
         clearances=clearances,
         report=report,
     )

@@ -23,7 +23,12 @@ class FlightReport:
     max_acceleration: float  # m/s^2, norm
     max_jerk: float  # m/s^3, norm
     max_body_rate: float  # rad/s, norm
+    max_angular_acceleration: float  # rad/s^2, norm
     max_yaw_rate: float  # rad/s
+    min_rotor_thrust: float  # newtons, of the rotor with least
+    max_rotor_thrust: float  # newtons, of the rotor with most
+    tracking_position_rms: float  # metres by which the simulated quadrotor strays
+    tracking_attitude_rms: float  # radians
     min_clearance: float  # metres from the drone's centre to the nearest blocked voxel's face
     end_error: float  # metres between the flight's end and its target point
     inflation: float  # metres by which obstacles were grown when this flight was planned
@@ -35,7 +40,8 @@ class FlightReport:
 class Flight:
     """One leg: from where the drone was to in front of its target. World frame, body FLU, quaternions xyzw.
 
-    States are sampled evenly at ``rate_hz`` of the settings (30 Hz or more), the last one at the flight's end.
+    States are sampled evenly at ``state_rate`` of the settings, the last one at the flight's end. The IMU sits at the
+    body's origin, along its axes: gyroscope ``body_rates``, accelerometer ``specific_forces`` = R^T (a + 9.81 e_z).
     """
 
     flight_id: int  # unique in the scene, counts from 0
@@ -48,7 +54,10 @@ class Flight:
     velocities: Float64  # (T, 3) m/s, world
     accelerations: Float64  # (T, 3) m/s^2, world, without gravity
     quaternions: Float64  # (T, 4) xyzw, body (FLU) to world
-    body_rates: Float64  # (T, 3) rad/s, about the body's x, y, z
+    body_rates: Float64  # (T, 3) rad/s, about the body's x, y, z: what an ideal gyroscope reads
+    angular_accelerations: Float64  # (T, 3) rad/s^2, about the body's x, y, z
+    specific_forces: Float64  # (T, 3) m/s^2, body: what an ideal accelerometer reads, (0, 0, +9.81) in hover
+    rotor_thrusts: Float64  # (T, 4) newtons: front left, front right, rear right, rear left
     yaws: Float64  # (T,) ENU: counter-clockwise from +x
     clearances: Float64  # (T,) metres to the nearest blocked voxel's face
     report: FlightReport
@@ -63,6 +72,9 @@ STATE_SCHEMA = pa.schema(
         ("acceleration", pa.list_(pa.float64(), 3)),
         ("quaternion", pa.list_(pa.float64(), 4)),
         ("body_rate", pa.list_(pa.float64(), 3)),
+        ("angular_acceleration", pa.list_(pa.float64(), 3)),
+        ("specific_force", pa.list_(pa.float64(), 3)),
+        ("rotor_thrust", pa.list_(pa.float64(), 4)),
         ("yaw", pa.float64()),
         ("clearance", pa.float64()),
     ]
@@ -116,6 +128,10 @@ class Trajectories:
             "rejected_tasks": len(self.rejected),
             "mean_length_m": round(float(np.mean(lengths)), 2),
             "min_clearance_m": round(float(np.min(clearances)), 3),
+            "worst_tracking_m": round(max((f.report.tracking_position_rms for f in self), default=0.0), 4),
+            "worst_tracking_deg": round(
+                np.degrees(max((f.report.tracking_attitude_rms for f in self), default=0.0)), 2
+            ),
         }
 
     def save(self, folder: Path) -> None:
@@ -163,6 +179,9 @@ def _states_table(flight: Flight) -> pa.Table:
             _vectors(flight.accelerations),
             _vectors(flight.quaternions),
             _vectors(flight.body_rates),
+            _vectors(flight.angular_accelerations),
+            _vectors(flight.specific_forces),
+            _vectors(flight.rotor_thrusts),
             pa.array(flight.yaws),
             pa.array(flight.clearances),
         ],
@@ -187,6 +206,9 @@ def _flight_from(row: dict[str, object], states: pa.Table) -> Flight:
         accelerations=column("acceleration", 3),
         quaternions=column("quaternion", 4),
         body_rates=column("body_rate", 3),
+        angular_accelerations=column("angular_acceleration", 3),
+        specific_forces=column("specific_force", 3),
+        rotor_thrusts=column("rotor_thrust", 4),
         yaws=states["yaw"].to_numpy(),
         clearances=states["clearance"].to_numpy(),
         report=report,

@@ -1,3 +1,5 @@
+from dataclasses import fields
+
 import numpy as np
 import pytest
 from flight_worlds import fill, furnished_room
@@ -5,16 +7,17 @@ from scipy.spatial.transform import Rotation
 
 from flymirage_core.navigation.fly import fly_task_sets
 from flymirage_core.navigation.task_sets import Task, TaskSets, generate_task_sets
-from flymirage_core.navigation.trajectories import Trajectories
-from flymirage_core.settings import PlannerSettings, TaskSettings
+from flymirage_core.navigation.trajectories import Flight, Trajectories
+from flymirage_core.settings import PlannerSettings, QuadrotorSettings, TaskSettings
 
 SETTINGS = PlannerSettings()
+QUADROTOR = QuadrotorSettings()
 CENTRE = (4.0, 3.0, 1.4)
 
 
-def fly(tasks, world=None, seed=1):
+def fly(tasks, world=None, seed=1, quadrotor=QUADROTOR):
     grid, boxes = furnished_room() if world is None else world
-    return fly_task_sets(tasks, grid, boxes, SETTINGS, np.random.default_rng(seed))
+    return fly_task_sets(tasks, grid, boxes, SETTINGS, quadrotor, np.random.default_rng(seed))
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +82,39 @@ def test_reports_keep_the_limits_and_agree_with_the_states(flights):
         assert np.linalg.norm(flight.velocities, axis=1).max() <= report.max_speed * 1.001
 
 
+def test_reports_say_what_the_rotors_do_and_how_well_the_simulated_quadrotor_follows(flights):
+    least, most = QUADROTOR.rotor_limits
+    for flight in flights:
+        report = flight.report
+        assert least < report.min_rotor_thrust <= flight.rotor_thrusts.min()
+        assert flight.rotor_thrusts.max() <= report.max_rotor_thrust < most
+        assert np.linalg.norm(flight.angular_accelerations, axis=1).max() == pytest.approx(
+            report.max_angular_acceleration
+        )
+        assert 0 < report.tracking_position_rms <= QUADROTOR.max_position_rms
+        assert 0 < np.degrees(report.tracking_attitude_rms) <= QUADROTOR.max_attitude_rms_deg
+
+
+def test_the_imu_of_a_flight_gives_its_accelerations(flights):
+    for flight in flights:
+        world = Rotation.from_quat(flight.quaternions).apply(flight.specific_forces) - [0, 0, 9.81]
+        np.testing.assert_allclose(world, flight.accelerations, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("drone", "reason"),
+    [
+        (QuadrotorSettings(thrust_to_weight=1.05), "not flyable: rotors would give"),
+        (QuadrotorSettings(drag=(3.0, 3.0, 3.0)), "strays by"),
+        (QuadrotorSettings(max_attitude_rms_deg=0.001), "tilted away"),
+    ],
+)
+def test_flights_that_the_drone_cannot_fly_are_rejected_with_the_reason(tasks, drone, reason):
+    flown = fly(tasks, quadrotor=drone)
+    assert any(reason in task.reason for task in flown.rejected)
+    assert len(flown) + len(flown.rejected) == len(tasks)
+
+
 def test_flights_end_looking_at_the_centre_of_their_object(flights):
     _, boxes = furnished_room()
     for flight in flights:
@@ -124,6 +160,8 @@ def test_the_same_inputs_give_the_same_bytes_and_survive_storing(tasks, flights,
     flights.save(tmp_path)
     stored = Trajectories.load(tmp_path)
     for one, other, read in zip(flights, again, stored, strict=True):
-        for name in ("times", "positions", "velocities", "accelerations", "quaternions", "body_rates", "yaws"):
+        arrays = [f.name for f in fields(Flight) if isinstance(getattr(one, f.name), np.ndarray)]
+        assert len(arrays) == 12
+        for name in arrays:
             assert getattr(one, name).tobytes() == getattr(other, name).tobytes() == getattr(read, name).tobytes()
         assert one.report == other.report == read.report
