@@ -38,7 +38,7 @@ from flymirage_core.splats.cloud import GaussianCloud
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "annotation"))
 
 MIN_TRUE_SIZE = 0.2  # metres: smaller true objects are not counted as missed
-MIN_TRUE_PIXELS = 150  # seen within d_th1, over all views
+MIN_TRUE_PIXELS = 150  # over all views within d_th1 of its centre
 
 
 @dataclass(frozen=True)
@@ -116,11 +116,14 @@ def _in_opening(box: Any, openings: Sequence[np.ndarray]) -> bool:
 
 
 def countable(truth: Sequence[Any], views: Iterable[View], max_distance: float) -> list[bool]:
-    """Which true objects are large enough and really seen within ``max_distance``."""
+    """Which true objects are large enough, and were seen by views that their centre is within ``max_distance`` of."""
     pixels = np.zeros(len(truth), int)
+    centres = np.array([box.centre for box in truth]).reshape(-1, 3)
     for view in views:
-        points = _near_points(view, max_distance)
-        for i, box in enumerate(truth):
+        near = np.flatnonzero(np.linalg.norm(centres - view.camera.position, axis=1) <= max_distance)
+        points = _near_points(view, 2 * max_distance)
+        for i in near:
+            box = truth[i]
             c, s = np.cos(box.yaw), np.sin(box.yaw)
             local = (points - box.centre) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
             pixels[i] += int((np.abs(local) < np.divide(box.size, 2) + 0.02).all(axis=1).sum())

@@ -1,12 +1,14 @@
-"""Which fused points hold against all views: votes of frames that hit them and of frames that see through them."""
+"""Points held against all views: which are solid and which are seen through, and which views saw an object."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
+from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.fused_points import Frame
 
 Float32 = NDArray[np.float32]
@@ -17,6 +19,8 @@ RELATIVE_TOLERANCE: Final = 0.025
 """The same as a share of depth, where that is more."""
 MIN_HITS: Final = 2
 """Frames that must hit a point."""
+MIN_SUPPORT_POINTS: Final = 5
+"""Points of an object that a view must hit to have seen it."""
 
 
 def solid(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
@@ -27,19 +31,35 @@ def solid(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
     return np.asarray((votes[:, 0] >= min(MIN_HITS, len(frames))) & (votes[:, 1] <= votes[:, 0]))
 
 
-def supporting_frames(
-    points: Float32, owner: NDArray[np.int64], count: int, frames: Sequence[Frame], max_distance: float, min_points: int
-) -> NDArray[np.int64]:
-    """(count,) frames within ``max_distance`` metres that hit at least ``min_points`` points of each owner.
+@dataclass(frozen=True)
+class Detections:
+    """How an object was seen: number of views, and metres from its centre to the nearest of them."""
 
-    ``owner``: (N,) whose point it is, 0..count-1, or -1 for nobody's.
+    views: int
+    nearest: float
+
+
+def detections(
+    points: Float32, boxes: Sequence[FittedBox], frames: Sequence[Frame], max_distance: float
+) -> list[Detections]:
+    """For each box, the frames within ``max_distance`` metres of its centre that hit its points (N, 3) often enough.
+
+    The paper's pruning of single detections (section III-B): what lies beyond d_th1 of the optical centre does not count.
     """
-    support = np.zeros(count, np.int64)
+    owner = np.full(len(points), -1, np.int64)
+    for k, box in enumerate(boxes):
+        owner[box.members] = k
+    owned = np.flatnonzero(owner >= 0)
+    centres = np.array([box.centre for box in boxes]).reshape(-1, 3)
+    views, nearest = np.zeros(len(boxes), int), np.full(len(boxes), np.inf)
     for frame in frames:
-        hits = np.zeros(count, np.int64)
-        _count_hits(points, owner, frame.depth, *_projection(frame), max_distance, hits)
-        support += hits >= min_points
-    return support
+        hits = np.zeros(len(boxes), np.int64)
+        _count_hits(points[owned], owner[owned], frame.depth, *_projection(frame), hits)
+        distance = np.linalg.norm(centres - frame.camera.position, axis=1)
+        seen = (hits >= MIN_SUPPORT_POINTS) & (distance <= max_distance)
+        views += seen
+        nearest = np.where(seen, np.minimum(nearest, distance), nearest)
+    return [Detections(int(v), float(d)) for v, d in zip(views, nearest, strict=True)]
 
 
 def _projection(frame: Frame) -> tuple[Float32, Float32]:
@@ -50,24 +70,24 @@ def _projection(frame: Frame) -> tuple[Float32, Float32]:
 
 
 @numba.njit(cache=True, nogil=True)
-def _surface_gap(point: Float32, depth: Float32, matrix: Float32, lens: Float32) -> tuple[float, float, float]:
-    """(surface depth - point's depth, tolerance, distance to the camera); NaN where the frame says nothing."""
+def _surface_gap(point: Float32, depth: Float32, matrix: Float32, lens: Float32) -> tuple[float, float]:
+    """(surface depth - point's depth, tolerance); NaN where the frame says nothing."""
     x = matrix[0, 0] * point[0] + matrix[0, 1] * point[1] + matrix[0, 2] * point[2] + matrix[0, 3]
     y = matrix[1, 0] * point[0] + matrix[1, 1] * point[1] + matrix[1, 2] * point[2] + matrix[1, 3]
     z = matrix[2, 0] * point[0] + matrix[2, 1] * point[1] + matrix[2, 2] * point[2] + matrix[2, 3]
     if z <= np.float32(0.2):
-        return np.nan, 0.0, 0.0
+        return np.nan, 0.0
     u = int(np.floor(x / z * lens[0] + lens[2]))
     v = int(np.floor(y / z * lens[1] + lens[3]))
     if u < 1 or v < 1 or u >= depth.shape[1] - 1 or v >= depth.shape[0] - 1 or depth[v, u] <= 0:
-        return np.nan, 0.0, 0.0
-    return depth[v, u] - z, max(TOLERANCE, RELATIVE_TOLERANCE * z), np.sqrt(x * x + y * y + z * z)
+        return np.nan, 0.0
+    return depth[v, u] - z, max(TOLERANCE, RELATIVE_TOLERANCE * z)
 
 
 @numba.njit(cache=True, nogil=True)
 def _vote(points: Float32, depth: Float32, matrix: Float32, lens: Float32, votes: NDArray[np.int32]) -> None:
     for n in range(len(points)):
-        gap, tolerance, _ = _surface_gap(points[n], depth, matrix, lens)
+        gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
         if abs(gap) <= tolerance:
             votes[n, 0] += 1
         elif gap > tolerance:
@@ -81,12 +101,9 @@ def _count_hits(
     depth: Float32,
     matrix: Float32,
     lens: Float32,
-    max_distance: float,
     hits: NDArray[np.int64],
 ) -> None:
     for n in range(len(points)):
-        if owner[n] < 0:
-            continue
-        gap, tolerance, distance = _surface_gap(points[n], depth, matrix, lens)
-        if abs(gap) <= tolerance and distance <= max_distance:
+        gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
+        if abs(gap) <= tolerance:
             hits[owner[n]] += 1

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from flymirage_core.annotation.box_fitting import ON_FLOOR, FittedBox, fit_box, settle
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
-from flymirage_core.annotation.carving import solid, supporting_frames
+from flymirage_core.annotation.carving import Detections, detections, solid
 from flymirage_core.annotation.colours import colour_name, colour_step, shading_free, to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
@@ -41,14 +41,14 @@ NORMAL_RADIUS: Final = 3.0
 """Voxels within which points shape a normal."""
 NORMAL_NEIGHBOURS: Final = 16
 STRUCTURE_NEIGHBOURS: Final = 12
+HALF_AN_OBJECT: Final = 0.5
+"""Metres that an object may reach beyond its centre: so much farther than the limit its own pixels may lie."""
 MAX_SIDE: Final = 4.5
 """Metres; larger things are a part of the building that was not recognised."""
 MIN_SIDE: Final = 0.08
 """Metres; a box whose longest side is less is noise."""
 MIN_OBJECT_POINTS: Final = 25
 DUPLICATE_IOU: Final = 0.5
-MIN_SUPPORT_POINTS: Final = 5
-"""Points of an object that a view must hit to support it."""
 FULL_EVIDENCE: Final = 12
 """Supporting views from which more add nothing to the score."""
 
@@ -63,10 +63,15 @@ class EmbeddedAnnotator:
         self.settings = settings
 
     def annotate(self, views: Iterable[View], max_distance: float) -> BoxMap:
-        """See `Annotator.annotate`; only pixels within ``max_distance`` metres of their camera make objects."""
+        """See `Annotator.annotate`.
+
+        A detection here is an object as one view sees it, and is dropped if the object's centre lies beyond
+        ``max_distance``; an object of which no detection is left is dropped. Pixels farther than that by more than
+        `HALF_AN_OBJECT` are not looked at.
+        """
         frames = frames_of(views)
         structure = self.structure(frames)
-        cloud = fuse_points(frames, self.settings.voxel, max_distance)
+        cloud = fuse_points(frames, self.settings.voxel, max_distance + HALF_AN_OBJECT)
         cloud = _solid_cloud(cloud, structure, frames)
         boxes = propose_boxes(cloud, structure, self.settings.voxel)
         return self._described(boxes, cloud, structure, frames, max_distance)
@@ -87,14 +92,11 @@ class EmbeddedAnnotator:
         frames: Sequence[Frame],
         max_distance: float,
     ) -> BoxMap:
-        owner = np.full(len(cloud), -1, np.int64)
-        for k, box in enumerate(boxes):
-            owner[box.members] = k
-        support = supporting_frames(cloud.points, owner, len(boxes), frames, max_distance, MIN_SUPPORT_POINTS)
+        support = detections(cloud.points, boxes, frames, max_distance)
+        seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
         annotator = f"{self.name} {self.version}"
-        described = [
-            _object_box(k, box, boxes, cloud, structure, int(support[k]), annotator) for k, box in enumerate(boxes)
-        ]
+        rivals = [box for box, _ in seen]
+        described = [_object_box(k, box, rivals, cloud, structure, found, annotator) for k, (box, found) in enumerate(seen)]
         return BoxMap(tuple(described))
 
 
@@ -174,7 +176,7 @@ def _object_box(
     boxes: Sequence[FittedBox],
     cloud: FusedPoints,
     structure: RoomStructure,
-    support: int,
+    found: Detections,
     annotator: str,
 ) -> ObjectBox:
     lab = to_lab(cloud.colours[box.members])  # (M, 3)
@@ -185,12 +187,12 @@ def _object_box(
         centre=box.centre,
         size=box.size,
         yaw=box.yaw,
-        score=float(0.5 * label.fit + 0.5 * min(1.0, support / FULL_EVIDENCE)),
+        score=float(0.5 * label.fit + 0.5 * min(1.0, found.views / FULL_EVIDENCE)),
         label_source="size_prior",
         colour=colour_name(np.median(lab, axis=0)),
         material="",
-        supporting_frames=support,
-        nearest_camera_distance=float(cloud.nearest[box.members].min()),
+        supporting_frames=found.views,
+        nearest_camera_distance=found.nearest,
         annotator=annotator,
     )
 
