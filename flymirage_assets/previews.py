@@ -113,7 +113,7 @@ def trajectories(stage: Stage, product: Trajectories, world: World, boxes: BoxMa
     return plan.with_caption([numbers, "green: start   red: end   one colour for each task set"])
 
 
-def frames(stage: Stage, product: Frames, world: World, trajectories: Trajectories) -> Picture:
+def frames(stage: Stage, product: Frames, world: World, boxes: BoxMap, trajectories: Trajectories) -> Picture:
     """Six frames of the longest flight, colour above depth."""
     if not product.flight_ids:
         return text_card("no flight was recorded", [])

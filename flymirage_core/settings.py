@@ -176,11 +176,14 @@ class QuadrotorSettings(Section):
 class FrameSettings(Section):
     """The drone's camera and its video."""
 
-    width: Count = 480
-    height: Count = 360
-    horizontal_fov_deg: Positive = 80.0
+    width: Count = 640
+    height: Count = 480
+    horizontal_fov_deg: Annotated[float, Field(gt=0, lt=180)] = 80.0
+    """An FPV lens sees 110 to 130; the camera stays a pinhole without distortion."""
     rate: Positive = 10.0
-    """Hz; must divide the planner's state_rate."""
+    """Hz; must divide the planner's state_rate. 30 is video as people know it, at three times the size."""
+    instances: bool = False
+    """Write a third, lossless video: which object each pixel shows."""
     pitch_deg: float = 0.0
     """Downward tilt of the camera on the body."""
 

@@ -14,8 +14,9 @@ from flymirage_core.language.prompter import OfflinePrompter
 from flymirage_core.navigation.task_sets import Task, TaskSets
 from flymirage_core.navigation.trajectories import Flight, FlightReport, Trajectories
 from flymirage_core.rendering.camera import Camera, Intrinsics
-from flymirage_core.rendering.frames import BodyPath, CameraRig, Frames, cameras_along, record_frames
+from flymirage_core.rendering.frames import BodyPath, CameraRig, Frames, cameras_along
 from flymirage_core.rendering.rasterizer import Rendering
+from flymirage_core.rendering.recording import record_frames
 from flymirage_core.scene.description import Provenance, SceneDescription
 from flymirage_core.settings import VerdictSettings
 from flymirage_core.splats.cloud import GaussianCloud

@@ -6,6 +6,7 @@ from flymirage_assets import previews
 from flymirage_assets.stage import Stage, product_asset
 from flymirage_assets.tracked import TrackedRasterizer
 from flymirage_core.annotation.boxes import BoxMap
+from flymirage_core.annotation.instances import oriented_boxes
 from flymirage_core.language.prompts import Prompts
 from flymirage_core.language.verdicts import QualityVerdicts
 from flymirage_core.navigation.camera_paths import camera_paths
@@ -13,7 +14,8 @@ from flymirage_core.navigation.fly import fly_task_sets
 from flymirage_core.navigation.task_sets import TaskSets, generate_task_sets
 from flymirage_core.navigation.trajectories import Trajectories
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
-from flymirage_core.rendering.frames import Frames, camera_rig, record_frames
+from flymirage_core.rendering.frames import Frames, camera_rig
+from flymirage_core.rendering.recording import record_frames
 from flymirage_core.settings import Settings
 from flymirage_core.splats.world import World
 
@@ -43,14 +45,15 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return fly_task_sets(task_sets, grid, boxes, chosen.planner, chosen.quadrotor, stage.rng("trajectories"))
 
     @product_asset(
-        version="1", group=group, settings=settings, sections=["frames"], tools=["rasterizer"], draw=previews.frames
+        version="2", group=group, settings=settings, sections=["frames"], tools=["rasterizer"], draw=previews.frames
     )
-    def frames(stage: Stage, world: World, trajectories: Trajectories) -> Frames:
-        """RGB video, lossless depth video and the camera's pose at every frame, along every flight."""
+    def frames(stage: Stage, world: World, boxes: BoxMap, trajectories: Trajectories) -> Frames:
+        """RGB video, lossless depth video and, at every frame, the camera's pose and how much shows the target."""
         rig = camera_rig(stage.settings.frames)
-        paths = camera_paths(trajectories, rig.frame_rate)
+        paths = camera_paths(trajectories, boxes, rig.frame_rate)
         rasterizer = TrackedRasterizer(stage.tools.rasterizer, "frames")
-        return record_frames(world.cloud, paths, rig, rasterizer, stage.scratch)
+        objects = oriented_boxes(boxes) if stage.settings.frames.instances else None
+        return record_frames(world.cloud, paths, rig, rasterizer, stage.scratch, objects)
 
     @product_asset(
         version="1",

@@ -3,20 +3,24 @@
 import os
 import sys
 from collections import deque
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from queue import SimpleQueue
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from flymirage_core.progress import current_listener
 from flymirage_core.rendering import cpu_kernels as kernels
-from flymirage_core.rendering.camera import Camera
+from flymirage_core.rendering import picture_kernels
+from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rendering
 from flymirage_core.splats.cloud import GaussianCloud
 
 Float32 = NDArray[np.float32]
+P = TypeVar("P")
 
 LOOK_AHEAD = 2
 """Finished frames that may wait for their reader, beyond one for each thread."""
@@ -24,6 +28,11 @@ MAX_COORDINATE = 1e5
 """Metres. Gaussians farther from the world's origin are left out."""
 MAX_SCALE = 1e3
 """Metres. Gaussians with a larger standard deviation are left out: their squares would overflow float32."""
+
+
+COMPILING = "compiling the renderer (once)"
+PATIENCE = 1.5
+"""Seconds after which a person is told that kernels are being compiled; from numba's cache they come sooner."""
 
 
 class CpuRasterizer:
@@ -41,25 +50,31 @@ class CpuRasterizer:
 
     def render(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator[Rendering]:
         """Pictures in the cameras' order. At most ``threads + LOOK_AHEAD`` frames are held or in the making."""
-        for picture in self.render_float(cloud, cameras):
-            yield picture.quantised()
+        return self._frames(cloud, cameras, lambda *frame: rasterize(*frame).quantised())
 
     def render_float(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator["FloatPicture"]:
         """As `render`, before rounding to 8 bits and before depth is struck out where alpha is small."""
+        return self._frames(cloud, cameras, rasterize)
+
+    def _frames(
+        self, cloud: GaussianCloud, cameras: Sequence[Camera], make: "Callable[[SplatTable, Camera, Scratch], P]"
+    ) -> "Iterator[P]":
+        """What ``make`` makes of each camera on the pool's threads, in their order."""
+        compile_kernels()
         table = self._table(cloud)
         scratch: SimpleQueue[Scratch] = SimpleQueue()
         for _ in range(self.threads):
             scratch.put(Scratch.for_table(table))
 
-        def frame(camera: Camera) -> FloatPicture:
+        def frame(camera: Camera) -> P:
             mine = scratch.get()
             try:
-                return rasterize(table, camera, mine)
+                return make(table, camera, mine)
             finally:
                 scratch.put(mine)
 
         pool = ThreadPoolExecutor(self.threads, "rasterizer")
-        pending: deque[Future[FloatPicture]] = deque()
+        pending: deque[Future[P]] = deque()
         try:
             for camera in cameras:
                 pending.append(pool.submit(frame, camera))
@@ -94,8 +109,10 @@ class FloatPicture:
 
     def quantised(self) -> Rendering:
         """Rounded and clipped to 8 bits; depth is 0 where alpha is below `MIN_ALPHA_FOR_DEPTH`."""
-        rgb = np.rint(np.clip(self.rgb, 0, 1) * np.float32(255)).astype(np.uint8)
-        depth = np.where(self.alpha >= MIN_ALPHA_FOR_DEPTH, self.depth, np.float32(0))
+        rgb, depth = np.empty(self.rgb.shape, np.uint8), self.depth.copy()
+        picture_kernels.quantise(
+            self.rgb.ravel(), depth.ravel(), self.alpha.ravel(), MIN_ALPHA_FOR_DEPTH, rgb.reshape(-1)
+        )
         return Rendering(rgb, depth, self.alpha)
 
 
@@ -154,6 +171,28 @@ def rasterize(table: SplatTable, camera: Camera, scratch: Scratch) -> FloatPictu
         table.arrays(), packed, scratch.records, scratch.ids, picture.rgb, picture.depth, picture.alpha
     )
     return picture
+
+
+def compile_kernels() -> None:
+    """Compile the kernels, or load them from numba's cache, before the first picture; tells the progress listener."""
+    if kernels.render_frame.signatures:
+        return
+    with ThreadPoolExecutor(1, "compiler") as pool:
+        compiled = pool.submit(_first_picture)
+        listener = current_listener()
+        done, _ = wait([compiled], PATIENCE)
+        if listener is not None and not done:
+            listener(COMPILING, 0, 1)
+            compiled.result()
+            listener(COMPILING, 1, 1)
+        compiled.result()
+
+
+def _first_picture() -> None:
+    """Renders one Gaussian, with arrays of the types that all clouds have."""
+    point = GaussianCloud(*(np.ones((1, *shape), np.float32) for shape in ((3,), (4,), (3,), (), (1, 3))))
+    table = SplatTable.of(point)
+    rasterize(table, Camera(Intrinsics(8, 8, 8, 8, 4, 4), np.eye(4)), Scratch.for_table(table)).quantised()
 
 
 def drawable(cloud: GaussianCloud) -> NDArray[np.bool_]:

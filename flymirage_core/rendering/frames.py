@@ -1,13 +1,15 @@
 """`Frames`, the product of the `frames` asset: for each flight an RGB video, a depth video and a pose a frame.
 
 Layout: ``<flight_id:04d>/rgb.mp4`` (H.264), ``<flight_id:04d>/depth.mkv`` (FFV1, 16-bit millimetres, 0 = no return),
-``frames.parquet`` (`FRAME_SCHEMA`, a row a frame), ``camera.json`` (intrinsics, T_body_camera, frame rate). Nothing is
-decoded before it is asked for.
+if asked for ``<flight_id:04d>/instances.mkv`` (FFV1, 16 bits, object_id + 1, 0 = no object), ``frames.parquet``
+(`FRAME_SCHEMA`, a row a frame), ``camera.json`` (intrinsics, T_body_camera, frame rate), ``videos.json`` (sizes and
+checksums). Nothing is decoded before it is asked for. `recording` makes it.
 """
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -21,11 +23,9 @@ from scipy.spatial.transform import Rotation
 from flymirage_core.errors import InputError, ProductError
 from flymirage_core.files import link_tree
 from flymirage_core.rendering.camera import Camera, Intrinsics
-from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rasterizer, Rendering
-from flymirage_core.rendering.video import depth_writer, read_depth, read_depth_at, read_rgb, read_rgb_at, rgb_writer
-from flymirage_core.rendering.views import depth_to_millimetres
+from flymirage_core.rendering.instances import OrientedBoxes
+from flymirage_core.rendering.video import read_depth, read_depth_at, read_rgb, read_rgb_at
 from flymirage_core.settings import FrameSettings
-from flymirage_core.splats.cloud import GaussianCloud
 
 Float64 = NDArray[np.float64]
 
@@ -41,8 +41,13 @@ FRAME_SCHEMA = pa.schema(
         ("quaternion", pa.list_(pa.float64(), 4)),  # xyzw, camera (OpenCV) to world
         ("alpha_coverage", pa.float32()),  # share of pixels with alpha >= 0.5
         ("mean_depth", pa.float32()),  # metres, over the pixels with a return; 0 if there is none
+        ("target_share", pa.float32()),  # share of pixels that show the flight's target; null if it has none
+        ("target_in_view", pa.bool_()),  # is that share at least `TARGET_SEEN`?
     ]
 )
+
+TARGET_SEEN = 5e-4
+"""Share of the pixels from which on a target counts as in view: 12 x 12 of 640 x 480."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,16 @@ class BodyPath:
     times: Float64  # (T,)
     positions: Float64  # (T, 3)
     quaternions: Float64  # (T, 4) xyzw, body to world
+    target: OrientedBoxes | None = None  # (1,) what the flight flies to, if that is known
+
+
+@dataclass(frozen=True)
+class VideoFile:
+    """A video's path within the product, its size, and its checksum."""
+
+    path: str
+    bytes: int
+    crc32: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,6 +117,10 @@ class FlightFrames:
         """The depth frames at ``indices``. Errors as in `rgb`."""
         return read_depth_at(self.folder / "depth.mkv", indices)
 
+    def instances(self) -> Iterator[NDArray[np.uint16]]:
+        """Object numbers (H, W), in order: ``object_id + 1``, 0 = none. Raises `ProductError` if there is no video."""
+        return read_depth(self.folder / "instances.mkv", len(self))
+
     def depth(self) -> Iterator[NDArray[np.uint16]]:
         """Depth (H, W) in millimetres, in order; 0 = no return. Raises `ProductError` as `rgb` does."""
         return read_depth(self.folder / "depth.mkv", len(self))
@@ -119,7 +138,7 @@ class Frames:
         rows = self.table[self.table["flight_id"] == flight_id].reset_index(drop=True)
         if rows.empty:
             raise InputError(f"flight {flight_id} has no frames; those that have are {self.flight_ids}")
-        return FlightFrames(flight_id, _flight_folder(self.folder, flight_id), self.rig, rows)
+        return FlightFrames(flight_id, flight_folder(self.folder, flight_id), self.rig, rows)
 
     @property
     def flight_ids(self) -> list[int]:
@@ -135,18 +154,59 @@ class Frames:
 
     @staticmethod
     def load(folder: Path) -> "Frames":
-        """A handle on a saved folder; raises `ProductError` if its table, its camera or a flight's video is missing."""
+        """A handle on a saved folder.
+
+        Raises `ProductError` if its table or its camera is torn, frames are missing from a flight, or a video is
+        missing or cut short. A video that is damaged but of its full size is found by `check`.
+        """
         try:
             rig = CameraRig.load(folder / "camera.json")
-            table = pq.read_table(folder / "frames.parquet", schema=FRAME_SCHEMA).to_pandas()
+            table = pq.read_table(folder / "frames.parquet", schema=FRAME_SCHEMA, page_checksum_verification=True)
+            videos = _load_video_files(folder)
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise ProductError(f"{folder} is no whole `frames` product ({error}); materialise it again") from error
-        frames = Frames(folder, rig, table)
-        for flight_id in frames.flight_ids:
-            for video in (_flight_folder(folder, flight_id) / name for name in ("rgb.mp4", "depth.mkv")):
-                if not video.is_file():
-                    raise ProductError(f"{video} is missing; materialise `frames` again")
+        frames = Frames(folder, rig, table.to_pandas())
+        frames._check_index({video.path for video in videos})
+        for video in videos:
+            path = folder / video.path
+            size = path.stat().st_size if path.is_file() else None
+            if size != video.bytes:
+                found = "is missing" if size is None else f"has {size} bytes, {video.bytes} were written"
+                raise ProductError(f"{path} {found}; materialise `frames` again")
         return frames
+
+    def check(self) -> None:
+        """Read every video's bytes once; raises `ProductError` if any is not what was written."""
+        for video in _load_video_files(self.folder):
+            path = self.folder / video.path
+            if not path.is_file() or zlib.crc32(path.read_bytes()) != video.crc32:
+                raise ProductError(f"{path} is damaged: its checksum is wrong; materialise `frames` again")
+
+    def _check_index(self, videos: set[str]) -> None:
+        """Every flight's frames are numbered 0, 1, 2, ... and it has both of its videos."""
+        for flight_id in self.flight_ids:
+            rows = self.table["frame_index"][self.table["flight_id"] == flight_id]
+            if rows.tolist() != list(range(len(rows))):
+                raise ProductError(
+                    f"{self.folder / 'frames.parquet'}: flight {flight_id} has {len(rows)} rows that are not numbered "
+                    f"from 0 to {len(rows) - 1}; materialise `frames` again"
+                )
+            for name in ("rgb.mp4", "depth.mkv"):
+                path = flight_folder(Path(), flight_id) / name
+                if path.as_posix() not in videos:
+                    raise ProductError(
+                        f"{self.folder / 'videos.json'} does not know {path}; materialise `frames` again"
+                    )
+
+
+def save_video_files(folder: Path, videos: list[VideoFile]) -> None:
+    """Write ``videos.json``."""
+    text = json.dumps([asdict(video) for video in sorted(videos, key=lambda v: v.path)], indent=0)
+    (folder / "videos.json").write_text(text + "\n")
+
+
+def _load_video_files(folder: Path) -> list[VideoFile]:
+    return [VideoFile(**entry) for entry in json.loads((folder / "videos.json").read_text())]
 
 
 def camera_rig(settings: FrameSettings) -> CameraRig:
@@ -165,62 +225,7 @@ def cameras_along(path: BodyPath, rig: CameraRig) -> list[Camera]:
     return [Camera(rig.intrinsics, pose) for pose in poses]
 
 
-def record_frames(
-    cloud: GaussianCloud, paths: Sequence[BodyPath], rig: CameraRig, rasterizer: Rasterizer, folder: Path
-) -> Frames:
-    """Film every flight into ``folder``; only a few frames are ever held.
-
-    All flights are one call of the rasterizer, which works ahead while this thread encodes. ``frames.parquet`` is
-    written last. Raises `InputError` if the picture's size cannot be a video's.
-    """
-    folder.mkdir(parents=True, exist_ok=True)
-    rig.save(folder / "camera.json")
-    cameras = [cameras_along(path, rig) for path in paths]
-    pictures = rasterizer.render(cloud, [camera for along in cameras for camera in along])
-    tables = [FRAME_SCHEMA.empty_table()]
-    for path, along in zip(paths, cameras, strict=True):
-        if along:
-            measured = _film(_flight_folder(folder, path.flight_id), len(along), pictures, rig.frame_rate)
-            tables.append(_rows(path, along, measured))
-    table = pa.concat_tables(tables)
-    pq.write_table(table, folder / "frames.parquet")
-    return Frames(folder, rig, table.to_pandas())
-
-
-def _film(folder: Path, count: int, pictures: Iterator[Rendering], rate: float) -> list[tuple[float, float]]:
-    """Encode the next ``count`` pictures into a flight's two videos; (alpha coverage, mean depth) of each."""
-    measured = []
-    with rgb_writer(folder / "rgb.mp4", rate) as rgb, depth_writer(folder / "depth.mkv", rate) as depth:
-        for index in range(count):
-            picture = next(pictures, None)
-            if picture is None:
-                raise ProductError(f"{folder}: the rasterizer gave {index} pictures, {count} were asked for")
-            rgb.append(picture.rgb)
-            depth.append(depth_to_millimetres(picture.depth))
-            returns = picture.depth[picture.depth > 0]
-            coverage = float(np.mean(picture.alpha >= MIN_ALPHA_FOR_DEPTH))
-            measured.append((coverage, float(returns.mean()) if len(returns) else 0.0))
-    return measured
-
-
-def _rows(path: BodyPath, cameras: list[Camera], measured: list[tuple[float, float]]) -> pa.Table:
-    """A flight's rows of `FRAME_SCHEMA`."""
-    poses = np.array([camera.T_world_camera for camera in cameras])  # (T, 4, 4)
-    quaternions = Rotation.from_matrix(poses[:, :3, :3]).as_quat()
-    coverage, mean_depth = np.array(measured, np.float32).T
-    columns = [
-        pa.array(np.full(len(cameras), path.flight_id, np.int32)),
-        pa.array(np.arange(len(cameras), dtype=np.int32)),
-        pa.array(np.asarray(path.times, float)),
-        pa.FixedSizeListArray.from_arrays(pa.array(poses[:, :3, 3].ravel()), 3),
-        pa.FixedSizeListArray.from_arrays(pa.array(quaternions.ravel()), 4),
-        pa.array(coverage),
-        pa.array(mean_depth),
-    ]
-    return pa.Table.from_arrays(columns, schema=FRAME_SCHEMA)
-
-
-def _flight_folder(folder: Path, flight_id: int) -> Path:
+def flight_folder(folder: Path, flight_id: int) -> Path:
     """Where a flight's videos are."""
     return folder / f"{flight_id:04d}"
 

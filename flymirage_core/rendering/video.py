@@ -19,11 +19,17 @@ from flymirage_core.errors import InputError, ProductError
 
 GROUP_OF_PICTURES = 2
 """Frames from one key frame to the next; small, so that a trainer can jump to any frame (LeRobot's choice)."""
-H264_OPTIONS = {"crf": "18", "preset": "veryfast", "tune": "fastdecode"}
-"""Measured on a captured room at 480 x 360: 43 dB, 13 kB and 3 ms of CPU a frame."""
+H264_OPTIONS = {"crf": "18", "preset": "ultrafast"}
+"""42 to 45 dB at 640 x 480, 22 to 27 kB and 1.5 ms of CPU a frame; "veryfast" is a third smaller and takes 4 ms, which
+the renderer would wait for. Depth is three times as large anyway (benchmarks/RENDERING.md)."""
 FFV1_OPTIONS = {"level": "3", "coder": "1", "context": "0", "slices": "4", "slicecrc": "1"}
-"""A checksum in every slice. 56 kB and 3 ms of CPU a frame on the same room."""
+"""A checksum in every slice. 53 to 89 kB and 3.3 to 5 ms of CPU a frame at 640 x 480: less than PNG, and exact, which
+12-bit HEVC is not (benchmarks/RENDERING.md)."""
 BT601 = Colorspace.ITU601
+YUV_FROM_RGB = np.array(
+    [[65.481, 128.553, 24.966, 16 * 255], [-37.797, -74.203, 112.0, 128 * 255], [112.0, -93.786, -18.214, 128 * 255]]
+) / 255  # fmt: skip
+"""BT.601, limited range (3, 4): of 8-bit RGB and 1."""
 
 
 class VideoWriter:
@@ -32,29 +38,46 @@ class VideoWriter:
     Make one with `rgb_writer` or `depth_writer`.
     """
 
-    def __init__(self, path: Path, codec: str, formats: tuple[str, str], rate: float, options: dict[str, str]) -> None:
+    def __init__(self, path: Path, codec: str, pixel_format: str, rate: float, options: dict[str, str]) -> None:
         self.path = path
         self.count = 0
         self._codec, self._rate, self._options = codec, Fraction(rate).limit_denominator(1001), options
-        self._given, self._stored = formats
+        self._format = pixel_format
         self._container: Any = None
         self._stream: Any = None
 
     def __enter__(self) -> "VideoWriter":
-        self.path.parent.mkdir(parents=True, exist_ok=True)
-        self._container = av.open(str(self.path), "w", options={"fflags": "+bitexact"})
+        self.open()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        if kind is None:
+            self.close()
+        else:
+            self.abandon()
+
+    def open(self) -> None:
+        """Make the file; what comes next must end in `close` or `abandon`."""
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self._container = av.open(str(self.path), "w", options={"fflags": "+bitexact"})
+
+    def close(self) -> None:
+        """Write what is left. Raises `InputError` if there was no frame."""
         try:
-            if kind is None and self._stream is not None:
+            if self._stream is not None:
                 self._container.mux(self._stream.encode(None))
         finally:
-            self._container.close()
-        if kind is None and self.count == 0:
+            self.abandon()
+        if self.count == 0:
             raise InputError(f"{self.path.name}: no frame was given; a video needs at least one")
+
+    def abandon(self) -> None:
+        """Let go of the file as it is; after `close` this does nothing."""
+        if self._container is not None:
+            self._container.close()
+            self._container = None
 
     def append(self, frame: NDArray[np.generic]) -> None:
         """Encode one more frame; its shape must be the first one's."""
@@ -67,34 +90,40 @@ class VideoWriter:
                 f"{self.path.name}: frame {self.count} is {width} x {height} pixels, the first was "
                 f"{stream.width} x {stream.height}; all frames of a video must have one size"
             )
-        picture = av.VideoFrame.from_ndarray(np.ascontiguousarray(frame), format=self._given)
+        planes = i420(np.asarray(frame, np.uint8)) if self._format == "yuv420p" else np.ascontiguousarray(frame)
+        picture = av.VideoFrame.from_ndarray(planes, format=self._format)
         picture.pts, picture.time_base = self.count, 1 / self._rate
-        self._container.mux(stream.encode(picture.reformat(format=self._stored, dst_colorspace=BT601)))
+        self._container.mux(stream.encode(picture))
         self.count += 1
 
     def _open_stream(self, width: int, height: int) -> None:
-        if self._stored == "yuv420p" and (width % 2 or height % 2):
+        if self._format == "yuv420p" and (width % 2 or height % 2):
             raise InputError(
                 f"{self.path.name}: {width} x {height} pixels; H.264 video needs an even width and an even height"
             )
         stream = self._stream = self._container.add_stream(self._codec, rate=self._rate, options=self._options)
-        stream.width, stream.height, stream.pix_fmt = width, height, self._stored
+        stream.width, stream.height, stream.pix_fmt = width, height, self._format
         context = stream.codec_context
         context.gop_size, context.max_b_frames, context.thread_count = GROUP_OF_PICTURES, 0, 1
         context.flags |= av.codec.context.Flags.bitexact
         context.time_base = 1 / self._rate
-        if self._stored == "yuv420p":
+        if self._format == "yuv420p":
             context.colorspace, context.color_range = BT601, ColorRange.MPEG
 
 
 def rgb_writer(path: Path, rate: float) -> VideoWriter:
     """H.264 yuv420p for frames uint8 (H, W, 3), H and W even, at ``rate`` Hz. Raises `InputError` on odd sizes."""
-    return VideoWriter(path, "libx264", ("rgb24", "yuv420p"), rate, H264_OPTIONS)
+    return VideoWriter(path, "libx264", "yuv420p", rate, H264_OPTIONS)
 
 
 def depth_writer(path: Path, rate: float) -> VideoWriter:
     """FFV1 gray16le for frames uint16 (H, W) in millimetres, 0 = no return, at ``rate`` Hz. Lossless."""
-    return VideoWriter(path, "ffv1", ("gray16le", "gray16le"), rate, FFV1_OPTIONS)
+    return VideoWriter(path, "ffv1", "gray16le", rate, FFV1_OPTIONS)
+
+
+def instance_writer(path: Path, rate: float) -> VideoWriter:
+    """As `depth_writer`, for frames uint16 (H, W) of object numbers, 0 = no object."""
+    return VideoWriter(path, "ffv1", "gray16le", rate, FFV1_OPTIONS)
 
 
 def write_rgb(path: Path, frames: Iterable[NDArray[np.uint8]], rate: float) -> int:
@@ -133,6 +162,20 @@ def read_depth(path: Path, count: int) -> Iterator[NDArray[np.uint16]]:
     yield from _decoded(path, "gray16le", count)
 
 
+def i420(rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """RGB (H, W, 3), H and W even, to the planes Y, U, V (H 3/2, W) of yuv420p: BT.601, limited range.
+
+    The colour of four pixels is their mean. By OpenCV: cheaper than libswscale, and 0.4 to 1.4 dB nearer.
+    """
+    height, width = rgb.shape[:2]
+    yuv = cv2.transform(rgb, YUV_FROM_RGB)
+    colour = cv2.resize(yuv, (width // 2, height // 2), interpolation=cv2.INTER_AREA)
+    planes = np.empty(height * width * 3 // 2, np.uint8)
+    luma, u, v = np.split(planes, [height * width, height * width * 5 // 4])
+    luma[:], u[:], v[:] = yuv[:, :, 0].ravel(), colour[:, :, 1].ravel(), colour[:, :, 2].ravel()
+    return planes.reshape(height * 3 // 2, width)
+
+
 def _rgb_from(planes: NDArray[Any]) -> NDArray[np.uint8]:
     """By OpenCV, because libswscale's default conversion comes out one grey level darker."""
     return np.asarray(cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8)
@@ -141,7 +184,7 @@ def _rgb_from(planes: NDArray[Any]) -> NDArray[np.uint8]:
 def _decoded_at(path: Path, pixel_format: str, indices: Iterable[int]) -> Iterator[NDArray[Any]]:
     try:
         with av.open(str(path)) as container:
-            stream = container.streams.video[0]
+            stream: Any = container.streams.video[0]
             for index in indices:
                 wanted = round(index / (stream.average_rate * stream.time_base))
                 container.seek(wanted, stream=stream)  # to the key frame at or before it

@@ -10,6 +10,7 @@ import pandas as pd
 
 from flymirage_core.errors import ProductError
 from flymirage_core.files import link_tree
+from flymirage_core.rendering import picture_kernels
 from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.rasterizer import Rendering
 
@@ -19,8 +20,9 @@ DEPTH_UNIT = 0.001
 
 def depth_to_millimetres(depth: np.ndarray) -> np.ndarray:
     """float32 metres (H, W) -> uint16 millimetres (H, W), rounded; what is not finite or too far becomes 0."""
-    millimetres = np.rint(np.nan_to_num(depth, nan=0.0, posinf=0.0, neginf=0.0) / DEPTH_UNIT)
-    return np.where((millimetres > 0) & (millimetres <= 65535), millimetres, 0).astype(np.uint16)
+    millimetres = np.empty(depth.shape, np.uint16)
+    picture_kernels.millimetres(np.ascontiguousarray(depth, np.float32).ravel(), millimetres.reshape(-1))
+    return millimetres
 
 
 @dataclass(frozen=True, eq=False)

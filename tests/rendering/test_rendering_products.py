@@ -11,8 +11,9 @@ from scipy.spatial.transform import Rotation
 from flymirage_core.errors import InputError, ProductError
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.cpu import CpuRasterizer
-from flymirage_core.rendering.frames import FRAME_SCHEMA, BodyPath, Frames, camera_rig, record_frames
+from flymirage_core.rendering.frames import FRAME_SCHEMA, BodyPath, Frames, camera_rig
 from flymirage_core.rendering.rasterizer import Rendering
+from flymirage_core.rendering.recording import record_frames
 from flymirage_core.rendering.views import PosedViews, depth_to_millimetres
 from flymirage_core.settings import FrameSettings
 from flymirage_core.splats.cloud import GaussianCloud
@@ -100,7 +101,7 @@ def test_filming_again_gives_the_same_files(frames, tmp_path):
     paths = [hover(0, 5), hover(3, 2, yaw=math.pi)]
     again = record_frames(wall(), paths, camera_rig(SETTINGS), CpuRasterizer(1), tmp_path / "again")
     files = sorted(p.relative_to(frames.folder) for p in frames.folder.rglob("*") if p.is_file())
-    assert len(files) == 6
+    assert len(files) == 7
     for file in files:
         assert (frames.folder / file).read_bytes() == (again.folder / file).read_bytes(), file
 
