@@ -36,6 +36,10 @@ TALL: Final = 1.35
 """Things that reach higher above the floor are seen from the front only, so their depth is guessed up to the wall."""
 SEEN_DEPTH: Final = 0.25
 """... but only where less than this of their depth was seen."""
+ONE_SIDED: Final = 0.8
+"""Length of the mean horizontal direction to the cameras from which a thing was seen from one side only."""
+MAX_ONE_SIDED: Final = 0.7
+"""Metres of width up to which its back is guessed."""
 UNDER_CEILING: Final = 1.2
 """Metres: cords and chains are too thin to be seen."""
 MIN_HANGING: Final = 1.4
@@ -131,10 +135,13 @@ def _padded_area(footprint: Footprint) -> float:
     return float((footprint.size + SURFACE_MARGIN).prod())
 
 
-def fit_box(points: Float32, members: NDArray[np.intp], structure: RoomStructure) -> FittedBox:
-    """The box round ``points[members]``, down to the floor if it nearly touches it, and back to a wall close behind."""
+def fit_box(points: Float32, to_camera: Float32, members: NDArray[np.intp], structure: RoomStructure) -> FittedBox:
+    """The box round some points, down to the floor if it nearly touches it, and back to a wall close behind.
+
+    ``points``: (N, 3). ``to_camera``: (N, 3) directions to where each was seen from. ``members``: (M,) indices of the box's.
+    """
     cloud = points[members]
-    plan = fit_footprint(cloud, structure.yaw)
+    plan = _with_unseen_half(fit_footprint(cloud, structure.yaw), to_camera[members])
     low, high = _trimmed_range(cloud[:, 2:].astype(np.float64), HEIGHT_TRIM)
     bottom, top = float(low[0]), float(high[0])
     floor = float(structure.floor_map.at(plan.centre[None])[0])
@@ -147,6 +154,23 @@ def fit_box(points: Float32, members: NDArray[np.intp], structure: RoomStructure
         members,
     )
     return _reaching_wall(box, structure, tall=top - floor > TALL and bottom <= floor)
+
+
+def _with_unseen_half(plan: Footprint, to_camera: Float32) -> Footprint:
+    """The plan of a small thing that was seen from one side only, its depth doubled up to its width."""
+    direction = to_camera[:, :2].mean(axis=0)
+    if np.linalg.norm(direction) < ONE_SIDED or plan.size.max() > MAX_ONE_SIDED:
+        return plan
+    c, s = np.cos(plan.yaw), np.sin(plan.yaw)
+    along = direction @ np.array([[c, -s], [s, c]])  # (2,) in the plan's axes
+    axis = int(np.abs(along).argmax())
+    growth = min(plan.size[axis], plan.size[1 - axis] - plan.size[axis])
+    if growth <= 0:
+        return plan
+    size = plan.size.copy()
+    size[axis] += growth
+    shift = np.array([[c, s], [-s, c]])[axis] * np.sign(along[axis]) * growth / 2
+    return Footprint(plan.centre - shift, size, plan.yaw)
 
 
 def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> FittedBox:

@@ -96,14 +96,21 @@ class EmbeddedAnnotator:
         seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
         annotator = f"{self.name} {self.version}"
         rivals = [box for box, _ in seen]
-        described = [_object_box(k, box, rivals, cloud, structure, found, annotator) for k, (box, found) in enumerate(seen)]
+        described = [
+            _object_box(k, box, rivals, cloud, structure, found, annotator) for k, (box, found) in enumerate(seen)
+        ]
         return BoxMap(tuple(described))
 
 
 def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
     """Boxes of the objects in a cloud of solid points, floor to ceiling and then by place."""
     objects = np.flatnonzero(~structure.contains(cloud.points))
-    surface = _surface(cloud[objects], structure, voxel)
+    normals = surface_normals(
+        cloud.points[objects], cloud.to_camera[objects], NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS
+    )
+    bulk = ~structure.is_wall_skin(cloud.points[objects], normals)
+    objects = objects[bulk]
+    surface = _surface(cloud[objects], normals[bulk], structure, voxel)
     parts = colour_parts(surface)
     merge_parts(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure)
@@ -120,8 +127,7 @@ def _solid_cloud(cloud: FusedPoints, structure: RoomStructure, frames: Sequence[
     return cloud[kept]
 
 
-def _surface(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> Surface:
-    normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS)
+def _surface(cloud: FusedPoints, normals: Float32, structure: RoomStructure, voxel: float) -> Surface:
     edges = neighbour_edges(cloud.voxels)
     things = standing_things(cloud.points, normals, edges, structure.floor, structure.yaw)
     edges = edges[things[edges[:, 0]] == things[edges[:, 1]]]
@@ -141,7 +147,7 @@ def _surface(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> Surf
 
 def _fitted(parts: PartSet, objects: NDArray[np.intp], cloud: FusedPoints, structure: RoomStructure) -> list[FittedBox]:
     return [
-        fit_box(cloud.points, objects[parts.parts[k].members], structure)
+        fit_box(cloud.points, cloud.to_camera, objects[parts.parts[k].members], structure)
         for k in sorted(parts.parts)
         if len(parts.parts[k]) >= MIN_OBJECT_POINTS
     ]
@@ -154,11 +160,13 @@ def _is_object(box: FittedBox, structure: RoomStructure) -> bool:
     clearance = box.bottom - structure.floor
     if max(box.size) < MIN_SIDE or max(box.size) > MAX_SIDE:
         return False
-    trim = (height < 0.16 and clearance > 1.9) or (height < 0.12 and clearance < 0.1)
+    trim = (height < 0.16 and clearance > 1.9 and not box.hanging) or (height < 0.12 and clearance < 0.1)
+    ledge = height < 0.12 and long > 5 * short and structure.wall_gap(box.centre, short) < 0.1
+    skin = height < 0.05 and not box.hanging
     strip = short < 0.05 and height < 0.35
     stick = long < 0.14 and ((height < 0.40 and clearance < 0.3) or (height > 0.4 and len(box.members) < 150))
     speck = len(box.members) < 2 * MIN_OBJECT_POINTS and box.volume < 0.004
-    return not (trim or strip or stick or speck)
+    return not (trim or ledge or skin or strip or stick or speck)
 
 
 def _without_duplicates(boxes: Sequence[FittedBox]) -> list[FittedBox]:

@@ -25,6 +25,12 @@ MIN_ALPHA: Final = 0.6
 MAX_DISPARITY_CURVATURE: Final = 0.045
 """Relative difference of 1/z from its 3x3 mean beyond which a pixel lies on a depth edge. Planes are linear in 1/z, so
 grazing floors pass and flying pixels do not."""
+HALO_DEPTHS: Final = (0.4, 0.8, 1.6)
+"""Metres; something nearer than each has a rim of `HALO_WIDTH` at that depth."""
+HALO_WIDTH: Final = 0.05
+"""Metres by which splats blur a silhouette."""
+HALO_RATIO: Final = 1.4
+"""Depth against the nearer thing's from which a pixel is behind it."""
 MIN_INCIDENCE: Final = 0.2
 """Cosine between a pixel's ray and its surface's normal below which depth is not believed."""
 SQUARE: Final = 0.96
@@ -78,7 +84,19 @@ def frame_of(view: View) -> Frame:
     inside = cv2.erode(some.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
     incidence = _plane_angles(disparity, view.camera.intrinsics)[0]
     trusted = inside & (curvature < MAX_DISPARITY_CURVATURE) & (incidence > MIN_INCIDENCE)
+    trusted &= ~_in_halo(depth, view.camera.intrinsics.fx)
     return Frame(view.camera, picture.rgb, depth, np.where(trusted, incidence, 0).astype(np.float32))
+
+
+def _in_halo(depth: Float32, focal: float) -> Bool:
+    """(H, W) pixels behind the soft rim of something nearer, which is wider the nearer it is: their depth is a mixture."""
+    known = np.where(depth > 0, depth, np.inf).astype(np.float32)
+    halo = np.zeros(depth.shape, bool)
+    for limit in HALO_DEPTHS:
+        side = 2 * int(HALO_WIDTH * focal / limit) + 1
+        nearest = cv2.erode(known, np.ones((side, side), np.uint8))
+        halo |= (nearest < limit) & (depth > HALO_RATIO * nearest)
+    return halo
 
 
 def _plane_angles(disparity: Float32, k: Intrinsics) -> tuple[Float32, Float32]:

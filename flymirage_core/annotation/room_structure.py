@@ -41,6 +41,8 @@ WALL_THICKNESS: Final = 0.12
 """Metres behind a wall's plane that still are the wall."""
 WALL_CLEARANCE: Final = 0.06
 """Metres before it."""
+WALL_SKIN: Final = 0.10
+"""Metres before it where what faces as the wall does is the wall, seen askance."""
 FLOOR_CLEARANCE: Final = 0.045
 CEILING_CLEARANCE: Final = 0.07
 BACK_PERCENTILE: Final = 25
@@ -118,6 +120,20 @@ class RoomStructure:
         for wall in self.walls:
             inside |= wall.contains(points)
         return np.asarray(inside)
+
+    def is_wall_skin(self, points: Float32, normals: Float32) -> Bool:
+        """(N,) whether points (N, 3) with ``normals`` (N, 3) lie just before a wall and face as it does: its noise."""
+        skin = np.zeros(len(points), bool)
+        for wall in self.walls:
+            along = points[:, :2] @ wall.direction
+            near = (np.abs(wall.distance(points)) < WALL_SKIN) & (along > wall.start - 0.1) & (along < wall.end + 0.1)
+            skin |= near & (normals[:, :2] @ wall.normal > ALONG_WALL)
+        return skin
+
+    def wall_gap(self, centre: tuple[float, float, float], depth: float) -> float:
+        """Metres between the nearest wall and a thing of ``depth`` metres at ``centre``; inf without walls."""
+        gaps = [float(np.dot(w.normal, centre[:2])) - w.back - depth / 2 for w in self.walls]
+        return min((abs(gap) for gap in gaps), default=float("inf"))
 
 
 def find_structure(points: Float32, normals: Float32, square: Float32, voxel: float) -> RoomStructure:
