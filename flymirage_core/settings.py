@@ -105,12 +105,13 @@ class AnnotationSettings(Section):
 class TaskSettings(Section):
     """Task sets (section III-C)."""
 
-    sets: Count = 8
-    """N_s; the paper's scenes have about 100 flights, 20 sets of 5."""
+    sets: Count = 20
+    """N_s; with N_o = 5, about 100 flights a scene, as the paper has."""
     targets_per_set: Count = 5
     """N_o"""
     min_distance: Positive = 2.0
     max_distance: Positive = 10.0
+    """Of the way round obstacles; ``min_distance`` is asked of the straight line too."""
     sight_radius: Positive = 0.1
     """Radius of the cylinder round the ray of the visibility check."""
     safety_radius: Positive = 0.35

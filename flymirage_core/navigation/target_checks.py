@@ -2,7 +2,7 @@
 
 Position: the drone is not inside of the object's box. Visibility: no occupied point in a cylinder round the ray from
 the drone to the box, before the ray reaches the box. Waypoint safety: no occupied point round the target point.
-Distance: the way there is 2 to 10 m long.
+Distance: the way there is at most 10 m long, and 2 m or more even as the crow flies.
 """
 
 from dataclasses import dataclass
@@ -68,7 +68,8 @@ def check_target(box: ObjectBox, drone: Float64, space: TaskSpace, settings: Tas
         return "occluded"
     best_at = {(float(p[0]), float(p[1])): p for p in reversed(seeing)}  # the best height at each distance from the box
     for point in reversed(best_at.values()):
-        if settings.min_distance <= travel_distance(space.passable, drone, point) <= settings.max_distance:
+        straight = float(np.linalg.norm(point - drone))
+        if straight >= settings.min_distance and travel_distance(space.passable, drone, point) <= settings.max_distance:
             return point
     return "distance"
 

@@ -169,3 +169,14 @@ def test_a_set_without_any_valid_target_is_given_up():
 def test_a_centre_without_room_for_the_drone_is_an_error():
     with pytest.raises(PlanningError, match="no free space within 1 m"):
         generate_task_sets(empty_room(3, 3, 0.5), BoxMap(()), (1, 1, 0.2), SETTINGS, np.random.default_rng(0))
+
+
+def test_of_objects_that_served_equally_often_near_ones_tend_to_come_first():
+    things = BoxMap(tuple(thing(i, (1.5 + 9.0 * (i % 2), 3.0, 1.0), (0.3, 0.3, 0.3)) for i in range(40)))
+    first = [
+        generate_task_sets(
+            empty_room(12, 6, 2.6), things, (4.0, 3.0, 1.4), TaskSettings(sets=1, min_distance=0.1), seed
+        ).tasks[0]
+        for seed in map(np.random.default_rng, range(60))
+    ]
+    assert sum(task.object_id % 2 == 0 for task in first) > 33
