@@ -1,26 +1,39 @@
 """CPU milliseconds a frame of the CPU rasterizer, on one core, beside another renderer's in the same run.
 
-    python benchmarks/rendering.py WORLD.spz ... [--size 640x480 ...] [--prototype splat_cpu.py]
+    python benchmarks/rendering.py [WORLD.spz ...] [--size 640x480 ...] [--prototype splat_cpu.py]
+    python benchmarks/rendering.py --cold            seconds of the first picture: compiling, and from the cache
+    python benchmarks/rendering.py --memory 3000000  peak memory of a process that renders so many Gaussians
 
 Worlds are taken as they are in their files, with OpenCV axes and a free origin, as captured rooms and Marble's have;
-without any, a synthetic room is made. Each pose is timed three times with both renderers in turn; the best counts.
+after them come a generated world and a synthetic room of a million. Each pose is timed three times with both renderers
+in turn; the best counts.
 """
 
 import argparse
 import importlib.util
 import itertools
+import os
+import resource
+import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.cpu import CpuRasterizer, Scratch, SplatTable, rasterize
+from flymirage_core.scene.writer import OfflineSceneWriter
+from flymirage_core.settings import GenerationSettings
 from flymirage_core.splats.cloud import GaussianCloud
 from flymirage_core.splats.files import read_cloud
+from flymirage_core.splats.world import World
+from flymirage_core.worldgen.model import OfflineWorldModel
 
 REPEATS = 3
 FIELD_OF_VIEW = np.radians(90)
@@ -35,9 +48,21 @@ def main() -> None:
     parser.add_argument("worlds", nargs="*", type=Path)
     parser.add_argument("--size", nargs="+", default=["320x240", "640x480", "960x720"])
     parser.add_argument("--poses", type=int, default=8)
-    parser.add_argument("--gaussians", type=int, default=500_000, help="of the synthetic room")
+    parser.add_argument("--gaussians", type=int, default=1_000_000, help="of the synthetic room")
+    parser.add_argument("--cold", action="store_true")
+    parser.add_argument("--memory", type=int, metavar="GAUSSIANS")
     parser.add_argument("--prototype", type=Path, help="a module with Scene, Workspace and render, to compare with")
     chosen = parser.parse_args()
+    if chosen.cold:
+        first_picture_times()
+    elif chosen.memory:
+        peak_memory(chosen.memory)
+    else:
+        compare(chosen)
+
+
+def compare(chosen: argparse.Namespace) -> None:
+    """The table: each world at each size."""
     prototype = loaded(chosen.prototype) if chosen.prototype else None
     print(f"{'world':<24}{'Gaussians':>10}{'size':>10}{'ours':>9}{'max':>8}{'proto':>9}{'ratio':>7}{'2 threads':>11}")
     for name, cloud in worlds(chosen.worlds, chosen.gaussians):
@@ -56,12 +81,22 @@ def main() -> None:
 def worlds(paths: list[Path], gaussians: int) -> Iterator[tuple[str, GaussianCloud]]:
     for path in paths:
         yield path.stem, read_cloud(path)
-    if not paths:
-        yield "synthetic room", synthetic_room(gaussians)
+    world = generated_world()
+    turn = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # z up to OpenCV's y down, as captured rooms have it
+    means = ((world.cloud.means - world.centre) @ turn.T).astype(np.float32)
+    turned = Rotation.from_matrix(turn) * Rotation.from_quat(world.cloud.quaternions)
+    yield "generated", replace(world.cloud, means=means, quaternions=turned.as_quat().astype(np.float32))
+    yield "synthetic room", synthetic_room(gaussians)
 
 
-def synthetic_room(count: int) -> GaussianCloud:
-    """Plates on the walls of a room of 8 x 3 x 6 m and on 14 boxes in it, SH degree 3, free round the origin."""
+def generated_world() -> World:
+    """What the embedded world model makes of one description."""
+    description = OfflineSceneWriter().describe("benchmark")
+    return OfflineWorldModel(GenerationSettings()).build(description)
+
+
+def synthetic_room(count: int, coefficients: int = 16) -> GaussianCloud:
+    """Plates on the walls of a room of 8 x 3 x 6 m and on 14 boxes in it, free round the origin; SH degree 3."""
     rng = np.random.default_rng(0)
     low, high = [np.array([-4.0, -1.4, -3.0])], [np.array([4.0, 1.6, 3.0])]
     for angle in np.arange(14) / 14 * 2 * np.pi:
@@ -81,7 +116,7 @@ def synthetic_room(count: int) -> GaussianCloud:
         np.tile(np.array([0, 0, 0, 1], np.float32), (count, 1)),
         scales.astype(np.float32),
         rng.beta(4, 1, count).astype(np.float32),
-        rng.normal(0, 0.1, (count, 16, 3)).astype(np.float32),
+        (0.1 * rng.standard_normal((count, coefficients, 3), np.float32)),
     )
 
 
@@ -124,6 +159,32 @@ def speed_up(cloud: GaussianCloud, cameras: list[Camera]) -> float:
             pass
         walls.append(time.perf_counter() - start)
     return walls[0] / walls[1]
+
+
+def first_picture_times() -> None:
+    """Seconds from asking for the first picture to having it, in new processes: compiled, then from numba's cache."""
+    code = (
+        "import sys, time; sys.path.insert(0, sys.argv[1]); import rendering as b; c = b.synthetic_room(2);"
+        "from flymirage_core.progress import listening\nstart, cpu = time.perf_counter(), time.process_time()\n"
+        "with listening(lambda *report: print(' ', *report)): next(b.CpuRasterizer(1).render(c, b.poses(64, 48, 1)))\n"
+        "print(f'{time.perf_counter() - start:.1f} s wall, {time.process_time() - cpu:.1f} s CPU')"
+    )
+    with tempfile.TemporaryDirectory() as cache:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": cache}
+        for state in ("cold", "from the cache"):
+            print(state, flush=True)
+            here = str(Path(__file__).parent)
+            subprocess.run([sys.executable, "-c", code, here], env=environment, check=True)
+
+
+def peak_memory(count: int) -> None:
+    """Most memory this process held while it made and rendered a synthetic room with SH degree 0, on two threads."""
+    cloud = synthetic_room(count, coefficients=1)
+    made = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    for _ in CpuRasterizer(2).render(cloud, poses(640, 480, 8)):
+        pass
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    print(f"{count} Gaussians: {made:.2f} GiB when made, {peak:.2f} GiB after rendering 640x480 on two threads")
 
 
 def our_renderer(cloud: GaussianCloud) -> Renderer:
