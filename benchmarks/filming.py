@@ -70,7 +70,7 @@ def worlds(paths: Sequence[Path]) -> Iterator[tuple[str, GaussianCloud, np.ndarr
 def small_circle(centre: np.ndarray, count: int) -> BodyPath:
     angles = np.arange(count) * np.radians(3)  # 30 degrees a second
     positions = centre + 0.3 * np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
-    return BodyPath(0, np.arange(count) / 10, positions, Rotation.from_euler("z", angles).as_quat())
+    return BodyPath(0, np.arange(count) / 10, positions, Rotation.from_rotvec(np.outer(angles, [0, 0, 1])).as_quat())
 
 
 def compare_codecs(pictures: list[Rendering]) -> None:

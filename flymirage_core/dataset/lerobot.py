@@ -78,6 +78,8 @@ def export_lerobot(
         )
     rig = _common_rig(scenes)
     described = features(rig, depth is DepthExport.PNG16)
+    for products in scenes:
+        products.frames.check()
     with _appearing_whole(folder) as partial:
         splits: dict[str, int] = {}
         with EpisodeWriter(partial, rig, described) as writer:

@@ -41,7 +41,11 @@ class MeasuredJudge:
     name: str = "measured 1"
 
     def judge(self, frames: Frames, flights: Trajectories, boxes: BoxMap) -> QualityVerdicts:
-        """One verdict for each flight, in their order. Raises `ProductError` if products do not belong together."""
+        """One verdict for each flight, in their order.
+
+        Raises `ProductError` if products do not belong together, or a video is damaged.
+        """
+        frames.check()
         return QualityVerdicts(tuple(self._verdict(frames, flight, boxes) for flight in flights))
 
     def _verdict(self, frames: Frames, flight: Flight, boxes: BoxMap) -> Verdict:
