@@ -125,8 +125,16 @@ class TaskSettings(Section):
 
 
 class PlannerSettings(Section):
-    """EGO-Planner and the quadrotor's limits (norms, not per axis)."""
+    """EGO-Planner and the limits of its flights (norms, not per axis)."""
 
+    mode: Literal["one_shot", "receding"] = "one_shot"
+    """Plan each flight at once with the whole map, or on the way with what has been seen of it so far."""
+    sensing_range: Positive = 5.0
+    """receding: what lies within it has been seen."""
+    horizon: Positive = 7.5
+    """receding: length of the way that is planned ahead."""
+    replan_period: Positive = 1.0
+    """receding: seconds between two plans if nothing new gets in the way."""
     max_speed: Positive = 1.5
     max_acceleration: Positive = 2.0
     max_jerk: Positive = 8.0

@@ -1,4 +1,4 @@
-"""Uniform cubic B-splines in space: evaluation, derivatives, a fit with exact ends, time scaling. No planning here.
+"""Uniform cubic B-splines in space: evaluation, derivatives, joining, a fit with exact ends. No planning here.
 
 N control points Q_i and one knot interval dt; the spline lives on times [0, (N - 3) dt]. Position at time t = (i + u)
 dt: p = [1 u u^2 u^3] M [Q_i .. Q_i+3]. Velocity is piecewise quadratic, acceleration piecewise linear, jerk piecewise
@@ -52,6 +52,36 @@ class UniformBSpline:
         acceleration = np.linalg.norm(np.diff(points, 2, axis=0), axis=1).max() / dt**2
         jerk = np.linalg.norm(np.diff(points, 3, axis=0), axis=1).max() / dt**3
         return float(speed), float(acceleration), float(jerk)
+
+
+@dataclass(frozen=True, eq=False)
+class SplinePiece:
+    """What was flown of a spline: its first ``duration`` seconds."""
+
+    spline: UniformBSpline
+    duration: float
+
+
+@dataclass(frozen=True, eq=False)
+class JoinedSplines:
+    """Splines that were flown one after the other, each for a while; as smooth as its joints."""
+
+    pieces: tuple[SplinePiece, ...]
+
+    @property
+    def duration(self) -> float:
+        return float(sum(piece.duration for piece in self.pieces))
+
+    def at(self, times: ArrayLike, derivative: int = 0) -> Float64:
+        """As `UniformBSpline.at`."""
+        moments = np.asarray(times, float)
+        starts = np.concatenate([[0.0], np.cumsum([piece.duration for piece in self.pieces])])
+        which = np.clip(np.searchsorted(starts, moments, side="right") - 1, 0, len(self.pieces) - 1)  # (...,)
+        out = np.empty((*moments.shape, 3))
+        for n, piece in enumerate(self.pieces):
+            here = which == n
+            out[here] = piece.spline.at(np.clip(moments[here] - starts[n], 0.0, piece.duration), derivative)
+        return out
 
 
 def fit_bspline(samples: ArrayLike, interval: float, derivatives: ArrayLike | None = None) -> UniformBSpline:

@@ -4,6 +4,7 @@ Curves are evaluated by scipy, distances to obstacles are exact and found by sea
 samples.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -41,16 +42,19 @@ class FlightMeasures:
     end_error: float  # the larger one of both ends
 
 
+Piece = tuple[ArrayLike, float, float]
+"""Control points (N, 3) of a uniform cubic B-spline, its knot interval, and for how many seconds it is flown."""
+
+
 def check_flight(
-    control_points: ArrayLike,  # (N, 3)
-    interval: float,
+    pieces: Sequence[Piece],
     ends: tuple[ArrayLike, ArrayLike],  # where it should start and stop, (3,) each
     grid: OccupancyGrid,
     inflated: OccupancyGrid,
     inflation: float,
     settings: PlannerSettings,
 ) -> FlightMeasures:
-    """Measures a uniform cubic B-spline flight and accepts it.
+    """Measures a flight along one or more uniform cubic B-splines, flown one after the other, and accepts it.
 
     Accepted is: no sample in a blocked voxel of either grid; exact clearance at least ``inflation``; speed,
     acceleration and jerk within the limits; both ends within `MAX_END_ERROR` and at rest; position, velocity and
@@ -59,7 +63,7 @@ def check_flight(
     Raises:
         PlanningError: the first of these that fails, with place and value.
     """
-    curve = _curve(np.asarray(control_points, float), interval)
+    curve = _Curve(pieces)
     times = _sample_times(curve)
     position, velocity, acceleration, jerk = (curve(times, nu) for nu in range(4))  # (M, 3) each
     clearance = exact_clearance(grid, position)
@@ -94,13 +98,27 @@ def exact_clearance(grid: OccupancyGrid, points: ArrayLike) -> Float64:
     return _clearances(grid.state, np.ascontiguousarray(cells)) * grid.resolution
 
 
-def _curve(points: Float64, interval: float) -> BSpline:
-    knots = (np.arange(len(points) + 4) - 3) * interval
-    return BSpline(knots, points, 3, extrapolate=False)
+class _Curve:
+    """The pieces in scipy's hands."""
+
+    def __init__(self, pieces: Sequence[Piece]) -> None:
+        self.splines = []
+        for points, interval, _ in pieces:
+            knots = (np.arange(len(np.asarray(points)) + 4) - 3) * interval
+            self.splines.append(BSpline(knots, np.asarray(points, float), 3))
+        self.starts = np.concatenate([[0.0], np.cumsum([duration for *_, duration in pieces])])
+
+    def __call__(self, times: Float64, derivative: int = 0) -> Float64:
+        which = np.clip(np.searchsorted(self.starts, times, side="right") - 1, 0, len(self.splines) - 1)
+        out = np.empty((len(times), 3))
+        for n, spline in enumerate(self.splines):
+            here = which == n
+            out[here] = spline(times[here] - self.starts[n], derivative)
+        return out
 
 
-def _sample_times(curve: BSpline) -> Float64:
-    end = float(curve.t[-4])
+def _sample_times(curve: _Curve) -> Float64:
+    end = float(curve.starts[-1])
     coarse = np.linspace(0, end, 200)
     length = float(np.linalg.norm(np.diff(curve(coarse), axis=0), axis=1).sum())
     fastest = max(_largest(curve(coarse, 1)), length / end)

@@ -11,7 +11,8 @@ from flymirage_core.errors import PlanningError
 from flymirage_core.navigation.flatness import BodyMotion, FlatMotion, body_motion
 from flymirage_core.navigation.flight_check import exact_clearance
 from flymirage_core.navigation.flight_space import FlightSpace
-from flymirage_core.navigation.planner import PLANNER, PlannedFlight, plan_flight_in
+from flymirage_core.navigation.planner import PlannedFlight, plan_flight_in
+from flymirage_core.navigation.replanner import replan_flight_in
 from flymirage_core.navigation.task_sets import Task, TaskSets
 from flymirage_core.navigation.tracking import TrackingMeasures, track
 from flymirage_core.navigation.trajectories import Flight, FlightReport, RejectedTask, Trajectories
@@ -21,6 +22,9 @@ from flymirage_core.settings import PlannerSettings, QuadrotorSettings
 
 Float64 = NDArray[np.float64]
 
+PLANNERS: Final = {"one_shot": plan_flight_in, "receding": replan_flight_in}
+ROUNDING: Final = 1e-6
+"""States: a flight ends with a state, or just after it."""
 HOVER_DERIVATIVES: Final = 4
 """Position, velocity, acceleration, jerk; all but the first are zero in hover."""
 
@@ -50,7 +54,7 @@ def fly_task_sets(
             set_index, position, yaw = task.set_index, np.array(task.start), None
         target_centre = np.array(boxes.by_id(task.object_id).centre)
         try:
-            planned = plan_flight_in(space, position, task.target_point, settings, stream)
+            planned = PLANNERS[settings.mode](space, position, task.target_point, settings, stream)
             states = _sampled(planned, target_centre, yaw, settings, quadrotor)
             tracking = _flyable(states, quadrotor)
         except PlanningError as error:
@@ -80,11 +84,11 @@ def _sampled(
 ) -> _States:
     """The planned flight at ``settings.state_rate``."""
     spline, rate = planned.spline, settings.state_rate
-    count = round(spline.duration * rate)
-    fine = spline.at(np.linspace(0, spline.duration, count * SUBSTEPS + 1))
+    count = int(np.ceil(spline.duration * rate - ROUNDING))
+    fine = spline.at(np.arange(count * SUBSTEPS + 1) / (rate * SUBSTEPS))
     turn = plan_yaw(fine, target_centre, first_yaw, settings)
     clock = np.arange(-turn.before, count + turn.after + 1)  # (T,) states from departure on
-    moving = (clock >= 0) & (clock <= count)
+    moving = (clock >= 0) & (clock <= spline.duration * rate + ROUNDING)
     position, velocity, acceleration, jerk = (spline.at(clock / rate, n) for n in range(HOVER_DERIVATIVES))
     for derivative in (velocity, acceleration, jerk):
         derivative[~moving] = 0.0
@@ -148,7 +152,7 @@ def _recorded(
         min_clearance=min(measures.min_clearance, float(clearances.min())),
         end_error=float(np.linalg.norm(states.positions[-1] - target_point)),
         inflation=planned.inflation,
-        planner=PLANNER,
+        planner=planned.planner,
         attempts=planned.attempts,
     )
     return Flight(

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flymirage_core.errors import PlanningError
 from flymirage_core.navigation import lbfgs
-from flymirage_core.navigation.bspline import UniformBSpline, fit_bspline
+from flymirage_core.navigation.bspline import JoinedSplines, UniformBSpline, fit_bspline
 from flymirage_core.navigation.flight_check import FlightMeasures, check_flight
 from flymirage_core.navigation.flight_space import FlightSpace
 from flymirage_core.navigation.obstacle_pairs import ObstaclePairs, Voxels, find_pairs, is_blocked, voxels_of
@@ -69,10 +69,11 @@ PORTFOLIO: Final = (
 class PlannedFlight:
     """A flight that passed every check."""
 
-    spline: UniformBSpline
+    spline: UniformBSpline | JoinedSplines
     inflation: float  # metres by which obstacles were grown
     attempts: str  # "path_seed:still in an obstacle; short_margin:ok"
     measures: FlightMeasures
+    planner: str = PLANNER
 
 
 def plan_flight(
@@ -115,9 +116,8 @@ def plan_flight_in(
             seed = path if attempt.seed == "path" else bow_seed(a, b, generator)
             try:
                 spline = _attempted(seed, attempt, inflated, settings)
-                measures = check_flight(
-                    spline.control_points, spline.interval, (a, b), space.grid, inflated, inflation, settings
-                )
+                whole = [(spline.control_points, spline.interval, spline.duration)]
+                measures = check_flight(whole, (a, b), space.grid, inflated, inflation, settings)
             except PlanningError as error:
                 record.append(f"{attempt.name}{suffix}:{error}")
                 continue
@@ -130,11 +130,11 @@ def _attempted(seed: Float64, attempt: Attempt, space: OccupancyGrid, settings: 
     """One attempt: fit, rebound, refinement, time; free in the inflated ``space`` and within the limits."""
     limits = np.array([settings.max_speed, settings.max_acceleration, settings.max_jerk])
     samples, interval = timed_samples(seed, CRUISE_SHARE * limits[0], RAMP_SHARE * limits[1], attempt.spacing)
-    spline = _rebounded(fit_bspline(samples, interval), attempt, space, limits)
+    spline = rebounded(fit_bspline(samples, interval), attempt, space, limits)
     return _timed(_refined(spline, space, limits), limits, settings.state_rate)
 
 
-def _rebounded(spline: UniformBSpline, attempt: Attempt, space: OccupancyGrid, limits: Float64) -> UniformBSpline:
+def rebounded(spline: UniformBSpline, attempt: Attempt, space: OccupancyGrid, limits: Float64) -> UniformBSpline:
     """The optimisation with pairs added whenever a new obstacle is met (Algorithm 2 of the paper).
 
     Differences to the original: all of the flight is looked at instead of two thirds, and the curve is tested, not only
@@ -154,7 +154,7 @@ def _rebounded(spline: UniformBSpline, attempt: Attempt, space: OccupancyGrid, l
             rebounds += 1
             pairs += find_pairs(points, space)
             continue
-        if _is_free(voxels, points):
+        if is_free(voxels, points):
             return UniformBSpline(points, spline.interval)
         optimisations += 1
         if optimisations == MAX_OPTIMISATIONS:
@@ -169,7 +169,7 @@ def _refined(spline: UniformBSpline, space: OccupancyGrid, limits: Float64) -> U
     Returns what needs less time to keep the limits: the refined flight or, if that is no faster or meets an obstacle,
     the given one. (The original rejects a flight whose refinement meets an obstacle.)
     """
-    ratio = _limit_ratio(spline, limits)
+    ratio = limit_ratio(spline, limits)
     if ratio <= 1:
         return spline
     slower = spline.stretched(np.sqrt(ratio))
@@ -183,11 +183,11 @@ def _refined(spline: UniformBSpline, space: OccupancyGrid, limits: Float64) -> U
     voxels = voxels_of(space)
     lbfgs.minimise(points, problem, voxels, REFINE_TOLERANCE)
     refined = UniformBSpline(points, slower.interval)
-    shorter = refined.duration * max(1.0, _limit_ratio(refined, limits)) < spline.duration * ratio
-    return refined if shorter and _is_free(voxels, points) else spline
+    shorter = refined.duration * max(1.0, limit_ratio(refined, limits)) < spline.duration * ratio
+    return refined if shorter and is_free(voxels, points) else spline
 
 
-def _limit_ratio(spline: UniformBSpline, limits: Float64) -> float:
+def limit_ratio(spline: UniformBSpline, limits: Float64) -> float:
     """By what factor the flight must take longer to keep the limits; below 1 if it could be faster."""
     speed, acceleration, jerk = spline.highest_norms()
     ratio = max(speed / limits[0], np.sqrt(acceleration / limits[1]), np.cbrt(jerk / limits[2]))
@@ -199,13 +199,13 @@ def _timed(spline: UniformBSpline, limits: Float64, state_rate: float) -> Unifor
 
     From rest to rest that is always possible.
     """
-    duration = spline.duration * max(1.0, _limit_ratio(spline, limits))
+    duration = spline.duration * max(1.0, limit_ratio(spline, limits))
     states = np.ceil(duration * state_rate - 1e-9)
     return spline.stretched(float(states / state_rate / spline.duration))
 
 
 @numba.njit(cache=True, nogil=True)
-def _is_free(voxels: Voxels, points: Float64) -> bool:
+def is_free(voxels: Voxels, points: Float64) -> bool:
     """Whether the spline of control points (N, 3) keeps to free voxels, sampled every `CHECK_STEP` metres or less."""
     sample = np.zeros(3)
     for i in range(len(points) - 3):

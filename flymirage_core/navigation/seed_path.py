@@ -52,8 +52,10 @@ def bow_seed(start: Float64, goal: Float64, generator: np.random.Generator) -> F
     return np.asarray(line + np.sin(np.linspace(0, np.pi, len(line)))[:, None] ** 2 * bow)
 
 
-def timed_samples(path: Float64, speed: float, acceleration: float, spacing: float) -> tuple[Float64, float]:
-    """Samples (K, 3) of a flight along ``path`` from rest to rest, and the seconds between them.
+def timed_samples(
+    path: Float64, speed: float, acceleration: float, spacing: float, start_speed: float = 0.0
+) -> tuple[Float64, float]:
+    """Samples (K, 3) of a flight along ``path`` from ``start_speed`` to rest, and the seconds between them.
 
     Speed rises and falls in half cosines, which bounds jerk as well: by 2 ``acceleration``^2 / ``speed``. Samples lie
     at most ``spacing`` metres apart; there are at least `MIN_SAMPLES`.
@@ -61,19 +63,23 @@ def timed_samples(path: Float64, speed: float, acceleration: float, spacing: flo
     legs = np.linalg.norm(np.diff(path, axis=0), axis=1)
     along = np.concatenate([[0.0], np.cumsum(legs)])  # (K',)
     length = float(along[-1])
-    top = min(speed, float(np.sqrt(2 * acceleration * length / np.pi)))
-    ramp = np.pi * top / (2 * acceleration)  # seconds; top * ramp / 2 metres
-    duration = length / top + ramp
+    start = min(start_speed, float(np.sqrt(4 * acceleration * length / np.pi)))  # from more one could not stop
+    top = max(min(speed, float(np.sqrt(2 * acceleration * length / np.pi + start**2 / 2))), start)
+    rise, fall = (np.pi * change / (2 * acceleration) for change in (top - start, top))  # seconds
+    cruise = max((length - (start + top) / 2 * rise - top / 2 * fall) / top, 0.0)
+    duration = rise + cruise + fall
     count = max(MIN_SAMPLES, int(np.ceil(duration * top / spacing)) + 1)
     times = np.linspace(0, duration, count)
-
-    def travelled(t: Float64) -> Float64:
-        """Metres in the first t <= ramp seconds."""
-        return np.asarray(top / 2 * (t - ramp / np.pi * np.sin(np.pi * t / ramp)))
-
-    rising = travelled(np.clip(times, 0, ramp)) + top * np.clip(times - ramp, 0, None)
-    falling = length - travelled(np.clip(duration - times, 0, ramp))
-    stations = np.where(times > duration - ramp, falling, rising)
+    rising = _travelled(np.clip(times, 0, rise), start, top, rise) + top * np.clip(times - rise, 0, None)
+    falling = length - _travelled(np.clip(duration - times, 0, fall), 0.0, top, fall)
+    stations = np.where(times > duration - fall, falling, rising)
     samples = np.stack([np.interp(stations, along, path[:, axis]) for axis in range(3)], axis=1)
     samples[0], samples[-1] = path[0], path[-1]
     return samples, duration / (count - 1)
+
+
+def _travelled(times: Float64, start: float, end: float, ramp: float) -> Float64:
+    """Metres in the first ``times`` seconds of a ramp of speed, half a cosine that takes ``ramp`` seconds."""
+    if ramp == 0:
+        return np.zeros_like(times)
+    return np.asarray((start + end) / 2 * times - (end - start) / 2 * ramp / np.pi * np.sin(np.pi * times / ramp))

@@ -25,8 +25,7 @@ def straight(speed=1.0, start=START, goal=GOAL):
 
 def check(spline, grid=ROOM, inflated=None, inflation=0.3, goal=GOAL):
     return check_flight(
-        spline.control_points,
-        spline.interval,
+        [(spline.control_points, spline.interval, spline.duration)],
         (START, goal),
         grid,
         keep_clear(grid, inflation) if inflated is None else inflated,
