@@ -26,11 +26,25 @@ export_app = typer.Typer(no_args_is_help=True, help="Write the finished scenes i
 app.add_typer(export_app, name="export")
 console = Console()
 DEMO_SCENE = "demo"
+SETTINGS_FILE = Path("flymirage.toml")
+DEMO_SETTINGS = """\
+# Written by `flymirage demo`: a data set for a laptop, 40 flights instead of the paper's 100, in smaller pictures.
+# Every command in this folder reads it; delete it (or a line) for the defaults in flymirage_core/settings.py.
+[tasks]
+sets = 8
+
+[frames]
+width = 480
+height = 360
+"""
 
 
 @app.command()
 def demo(out: Annotated[Path, typer.Option(help="where the LeRobot folder goes")] = Path("data/lerobot")) -> None:
     """Grow one offline scene through every product and export it: no key, no GPU, a few minutes."""
+    if not SETTINGS_FILE.exists():
+        SETTINGS_FILE.write_text(DEMO_SETTINGS)
+        console.print(f"wrote {SETTINGS_FILE}: 40 flights instead of the paper's 100, in smaller pictures")
     from flymirage_assets.report import products_table
     from resources.records import SceneOrigin
 

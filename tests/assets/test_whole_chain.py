@@ -114,6 +114,15 @@ def test_status_shows_the_scene(grown: Project) -> None:
     assert "trajectories" in grown.flymirage("status", SCENE).stdout
 
 
+def test_the_demo_is_one_command_with_a_table_and_the_places_of_things(project: Project) -> None:
+    outcome = project.flymirage("demo")
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    assert "sets = 8" in (project.folder / "flymirage.toml").read_text()
+    assert all(asset in outcome.stdout for asset in SCENE_PRODUCTS)
+    assert str(project.folder / "data" / "lerobot") in outcome.stdout
+    assert (project.folder / "data" / "lerobot" / "meta" / "info.json").exists()
+
+
 @pytest.mark.slow
 def test_a_captured_world_becomes_a_data_set(captured_worlds: Path, project: Project) -> None:
     outcome = project.flymirage("import", str(captured_worlds / "bedroom_sw_lod2.spz"), "--scene", "my-bedroom")
