@@ -1,6 +1,6 @@
 """What it costs to keep what was rendered: codecs of colour and depth, and the frames stage against bare rendering.
 
-    python benchmarks/filming.py WORLD.spz ... [--size 640x480] [--frames 40]
+    python benchmarks/filming.py WORLD.spz ... [--size 640x480] [--frames 40] [--threads 0]
 
 Worlds as in rendering.py; without any, a generated one. The camera turns slowly on a small circle. Figures are of the
 whole process's CPU time, because some encoders have threads of their own; stage and rendering also in wall time.
@@ -36,7 +36,7 @@ FFV1 = {"level": "3", "coder": "1", "context": "0", "slices": "4", "slicecrc": "
 HEVC = {"preset": "ultrafast", "x265-params": "log-level=none:pools=none:frame-threads=1"}
 NEAR, FAR = 0.05, 20.0
 """Metres between which 12 bits are spread, evenly in the logarithm."""
-ROUNDS = 3
+ROUNDS = 4
 
 
 def main() -> None:
@@ -44,6 +44,7 @@ def main() -> None:
     parser.add_argument("worlds", nargs="*", type=Path)
     parser.add_argument("--size", default="640x480")
     parser.add_argument("--frames", type=int, default=40)
+    parser.add_argument("--threads", type=int, default=0, help="of the renderer; 0 = all cores")
     chosen = parser.parse_args()
     width, height = map(int, chosen.size.split("x"))
     body = tuple(tuple(row) for row in np.block([[LEVEL_CAMERA, np.zeros((3, 1))], [np.zeros((1, 3)), 1]]).tolist())
@@ -55,7 +56,7 @@ def main() -> None:
         invalid = np.mean([picture.depth == 0 for picture in pictures])
         print(f"\n{name}: {len(cloud)} Gaussians, {invalid:.1%} of the depth is no return")
         compare_codecs(pictures)
-        compare_stage(cloud, path, rig)
+        compare_stage(cloud, path, rig, chosen.threads)
 
 
 def worlds(paths: Sequence[Path]) -> Iterator[tuple[str, GaussianCloud, np.ndarray]]:
@@ -114,7 +115,8 @@ def encoded(
             stream.codec_context.thread_count = 1
             for count, frame in enumerate(frames, start=1):
                 picture = av.VideoFrame.from_ndarray(frame, format=pixel_format)
-                stream.width, stream.height, stream.pix_fmt = picture.width, picture.height, pixel_format
+                if count == 1:
+                    stream.width, stream.height, stream.pix_fmt = picture.width, picture.height, pixel_format
                 picture.pts, picture.time_base = count - 1, Fraction(1, 10)
                 output.mux(stream.encode(picture))
             output.mux(stream.encode(None))
@@ -142,9 +144,9 @@ def as_hevc(depths: list[np.ndarray], rate: str) -> tuple[float, float, list[np.
     return size, cost, [np.rint(metres[b] * 1000).astype(int) for b in back]
 
 
-def compare_stage(cloud: GaussianCloud, path: BodyPath, rig: CameraRig) -> None:
+def compare_stage(cloud: GaussianCloud, path: BodyPath, rig: CameraRig, threads: int) -> None:
     """Bare rendering and the whole stage in turns; the best of each."""
-    rasterizer = CpuRasterizer()
+    rasterizer = CpuRasterizer(threads)
     cameras = cameras_along(path, rig)
     times = np.empty((ROUNDS, 2, 2))  # round, bare or stage, wall or CPU
     with tempfile.TemporaryDirectory() as folder:

@@ -2,7 +2,7 @@
 
     python benchmarks/rendering.py [WORLD.spz ...] [--size 640x480 ...] [--prototype splat_cpu.py]
     python benchmarks/rendering.py --cold            seconds of the first picture: compiling, and from the cache
-    python benchmarks/rendering.py --memory 3000000  peak memory of a process that renders so many Gaussians
+    python benchmarks/rendering.py --memory 3000000 3  peak memory of a process that renders so many, SH degree 3
 
 Worlds are taken as they are in their files, with OpenCV axes and a free origin, as captured rooms and Marble's have;
 after them come a generated world and a synthetic room of a million. Each pose is timed three times with both renderers
@@ -50,13 +50,13 @@ def main() -> None:
     parser.add_argument("--poses", type=int, default=8)
     parser.add_argument("--gaussians", type=int, default=1_000_000, help="of the synthetic room")
     parser.add_argument("--cold", action="store_true")
-    parser.add_argument("--memory", type=int, metavar="GAUSSIANS")
+    parser.add_argument("--memory", type=int, nargs=2, metavar=("GAUSSIANS", "DEGREE"))
     parser.add_argument("--prototype", type=Path, help="a module with Scene, Workspace and render, to compare with")
     chosen = parser.parse_args()
     if chosen.cold:
         first_picture_times()
     elif chosen.memory:
-        peak_memory(chosen.memory)
+        peak_memory(*chosen.memory)
     else:
         compare(chosen)
 
@@ -111,12 +111,14 @@ def synthetic_room(count: int, coefficients: int = 16) -> GaussianCloud:
     points[np.arange(count), axis] = ends
     scales = np.exp(rng.normal(np.log(0.012), 0.5, (count, 3)))
     scales[np.arange(count), axis] = 0.002
+    sh = rng.standard_normal((count, coefficients, 3), np.float32)
+    sh *= 0.1
     return GaussianCloud(
         points.astype(np.float32),
         np.tile(np.array([0, 0, 0, 1], np.float32), (count, 1)),
         scales.astype(np.float32),
         rng.beta(4, 1, count).astype(np.float32),
-        (0.1 * rng.standard_normal((count, coefficients, 3), np.float32)),
+        sh,
     )
 
 
@@ -177,14 +179,14 @@ def first_picture_times() -> None:
             subprocess.run([sys.executable, "-c", code, here], env=environment, check=True)
 
 
-def peak_memory(count: int) -> None:
-    """Most memory this process held while it made and rendered a synthetic room with SH degree 0, on two threads."""
-    cloud = synthetic_room(count, coefficients=1)
+def peak_memory(count: int, degree: int) -> None:
+    """Most memory that this process held while it made and rendered a synthetic room, on two threads."""
+    cloud = synthetic_room(count, (degree + 1) ** 2)
     made = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     for _ in CpuRasterizer(2).render(cloud, poses(640, 480, 8)):
         pass
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    print(f"{count} Gaussians: {made:.2f} GiB when made, {peak:.2f} GiB after rendering 640x480 on two threads")
+    print(f"{count} Gaussians, SH {degree}: {made:.2f} GiB when made, {peak:.2f} GiB after 640x480 on two threads")
 
 
 def our_renderer(cloud: GaussianCloud) -> Renderer:

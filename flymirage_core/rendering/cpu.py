@@ -30,6 +30,8 @@ MAX_SCALE = 1e3
 """Metres. Gaussians with a larger standard deviation are left out: their squares would overflow float32."""
 
 
+CHUNK = 2**16
+"""Gaussians whose coefficients are moved at once, so that a second copy of a large cloud is never held."""
 COMPILING = "compiling the renderer (once)"
 PATIENCE = 1.5
 """Seconds after which a person is told that kernels are being compiled; from numba's cache they come sooner."""
@@ -139,7 +141,7 @@ class SplatTable:
             np.log2(np.minimum(cloud.opacities[kept], 1)),
             kept.astype(np.uint32),
             bounding_balls(means, np.float32(kernels.EXTENT) * scales.max(axis=1, initial=0)),
-            np.ascontiguousarray(cloud.sh[kept].reshape(len(kept), 3 * cloud.sh.shape[1]).T),
+            _columns(cloud.sh, kept),
         )
 
     def arrays(self) -> kernels.Splats:
@@ -208,6 +210,15 @@ def drawable(cloud: GaussianCloud) -> NDArray[np.bool_]:
             & np.isfinite(cloud.sh).all(axis=(1, 2))
         )
     return usable
+
+
+def _columns(sh: Float32, kept: NDArray[np.intp]) -> Float32:
+    """The coefficients (3 K, N) of those ``kept`` (N,) of ``sh`` (M, K, 3). In chunks: they are most of a cloud."""
+    flat = sh.reshape(len(sh), 3 * sh.shape[1])
+    columns = np.empty((flat.shape[1], len(kept)), np.float32)
+    for first in range(0, len(kept), CHUNK):
+        columns[:, first : first + CHUNK] = flat[kept[first : first + CHUNK]].T
+    return columns
 
 
 def morton_codes(points: Float32) -> NDArray[np.uint32]:
