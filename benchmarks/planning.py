@@ -9,12 +9,16 @@ making a world's `FlightSpace` is not in them, it is made once per scene. Every 
 by nothing that the planner or its checker uses. Exits with 1 if a requirement is not met.
 """
 
+import re
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from planning_worlds import (
     Case,
     captured,
@@ -30,12 +34,16 @@ from scipy.interpolate import BSpline
 from scipy.spatial import cKDTree
 
 from flymirage_core.errors import PlanningError
+from flymirage_core.navigation.bspline import SplinePiece, UniformBSpline
 from flymirage_core.navigation.flight_space import FlightSpace
 from flymirage_core.navigation.planner import PlannedFlight, plan_flight_in
+from flymirage_core.navigation.replanner import replan_flight_in
 from flymirage_core.occupancy.grid import FREE, OccupancyGrid
 from flymirage_core.settings import PlannerSettings
 
+Planner = Callable[..., PlannedFlight]
 GENERATED_KEY = "bench-planning"
+SENSING_RANGES = (5.0, 1.5)
 SECOND_LOOK_RATE = 1000.0
 ORIGINAL = """The original (C++, 2 m/s and 3 m/s^2 per axis, replanning on the way; worlds like these):
   at 1 voxel : within 0.1 m of the goal: room 20/20, corridor 17/20, forest 15/20, flat 14/20; 0 collisions
@@ -73,6 +81,12 @@ def main() -> None:
             inflation = voxels * case.grid.resolution
             report(name, voxels, case, PlannerSettings(inflation=inflation, min_inflation=inflation), totals)
     print(ORIGINAL)
+    print("receding horizon at 3 voxels; jumps at replans of position, velocity and acceleration")
+    print("world               sensing m  flown  plans  failed  stops  ms median    p95  seconds  ", end="")
+    print("clearance min  jump 1e-9 SI  faults")
+    for name, case in cases.items():
+        for sensing_range in SENSING_RANGES:
+            receding(name, case, sensing_range)
     sys.exit(0 if judged(totals) else 1)
 
 
@@ -96,13 +110,15 @@ def report(name: str, voxels: int, case: Case, settings: PlannerSettings, totals
     totals.solvable[voxels] += solvable
     totals.milliseconds += milliseconds
     totals.end_errors += [a.end_error for a in m]
-    tree = cKDTree(case.grid.centre_of(np.argwhere(np.pad(case.grid.state, 1, constant_values=1) != FREE) - 1))
+    tree = blocked_tree(case.grid)
     for flight in flights:
         for fault in second_look(flight, case.grid, tree, settings):
             totals.faults[fault] += 1
 
 
-def plan_all(case: Case, settings: PlannerSettings) -> tuple[list[PlannedFlight], list[float], list[str], int]:
+def plan_all(
+    case: Case, settings: PlannerSettings, plan: Planner = plan_flight_in
+) -> tuple[list[PlannedFlight], list[float], list[str], int]:
     """Flights, CPU milliseconds of each solvable pair, failures, and how many pairs are solvable: ends connected."""
     space = FlightSpace.of(case.grid, settings)
     flights, milliseconds, failures = [], [], []
@@ -113,20 +129,58 @@ def plan_all(case: Case, settings: PlannerSettings) -> tuple[list[PlannedFlight]
         solvable += 1
         began = time.thread_time()
         try:
-            flights.append(plan_flight_in(space, start, goal, settings, np.random.default_rng(n)))
+            flights.append(plan(space, start, goal, settings, np.random.default_rng(n)))
         except PlanningError as error:
             failures.append(f"pair {n}: {error}")
         milliseconds.append(1000 * (time.thread_time() - began))
     return flights, milliseconds, failures, solvable
 
 
+def receding(name: str, case: Case, sensing_range: float) -> None:
+    """One line for the receding horizon, at 3 voxels."""
+    inflation = 3 * case.grid.resolution
+    settings = PlannerSettings(
+        mode="receding", sensing_range=sensing_range, inflation=inflation, min_inflation=inflation
+    )
+    flights, milliseconds, failures, solvable = plan_all(case, settings, replan_flight_in)
+    records = [[int(n) for n in re.findall(r"\d+", flight.attempts)] for flight in flights]
+    plans, failed, stops = np.sum(records, axis=0)
+    tree = blocked_tree(case.grid)
+    faults = [fault for flight in flights for fault in second_look(flight, case.grid, tree, settings)]
+    jumps = max(joint_jump(flight) for flight in flights)
+    print(
+        f"{name:19} {sensing_range:9.1f} {len(flights):3}/{solvable:2} {plans:6} {failed:7} {stops:6} "
+        f"{np.median(milliseconds):10.1f} "
+        f"{np.percentile(milliseconds, 95):6.1f} {np.median([f.measures.duration for f in flights]):8.2f} "
+        f"{min(f.measures.min_clearance for f in flights):14.3f} {1e9 * jumps:13.3f}  {' '.join(faults) or 'none'}"
+    )
+    for failure in failures:
+        print("   ", failure)
+
+
+def joint_jump(flight: PlannedFlight) -> float:
+    """Largest step of position (m), velocity (m/s) and acceleration (m/s^2) at a replan."""
+    pieces = flight.spline.pieces
+    return max(
+        (
+            float(np.abs(b.spline.at(0.0, order) - a.spline.at(a.duration, order)).max())
+            for a, b in pairwise(pieces)
+            for order in range(3)
+        ),
+        default=0.0,
+    )
+
+
+def blocked_tree(grid: OccupancyGrid) -> cKDTree:
+    """Of the centres of all blocked voxels, one layer outside of the grid included."""
+    return cKDTree(grid.centre_of(np.argwhere(np.pad(grid.state, 1, constant_values=1) != FREE) - 1))
+
+
 def second_look(flight: PlannedFlight, grid: OccupancyGrid, tree: cKDTree, settings: PlannerSettings) -> list[str]:
     """What is wrong with a flight, at 1 kHz: by scipy's splines and a k-d tree of the blocked voxels' centres."""
-    points, dt = flight.spline.control_points, flight.spline.interval
-    curve = BSpline((np.arange(len(points) + 4) - 3) * dt, points, 3)
     times = np.linspace(0, flight.spline.duration, int(flight.spline.duration * SECOND_LOOK_RATE) + 1)
     step = times[1]
-    p, v, a, j = (curve(times, order) for order in range(4))
+    p, v, a, j = (looked_up(flight, times, order) for order in range(4))
     faults = []
     if (grid.state_at(p) != FREE).any():
         faults.append("collisions")
@@ -143,6 +197,20 @@ def second_look(flight: PlannedFlight, grid: OccupancyGrid, tree: cKDTree, setti
             faults.append("too near")
             break
     return faults
+
+
+def looked_up(flight: PlannedFlight, times: NDArray[np.float64], order: int) -> NDArray[np.float64]:
+    """Derivatives (T, 3) by scipy."""
+    one = isinstance(flight.spline, UniformBSpline)
+    pieces = [SplinePiece(flight.spline, flight.spline.duration)] if one else flight.spline.pieces
+    out, begin = np.empty((len(times), 3)), 0.0
+    for piece in pieces:
+        points, dt = piece.spline.control_points, piece.spline.interval
+        curve = BSpline((np.arange(len(points) + 4) - 3) * dt, points, 3)
+        here = times >= begin
+        out[here] = curve(np.minimum(times[here] - begin, piece.duration), order)
+        begin += piece.duration
+    return out
 
 
 def judged(totals: Totals) -> bool:

@@ -17,6 +17,7 @@ from flymirage_core.occupancy.grid import OccupancyGrid
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.pictures.box_overlay import draw_boxes
 from flymirage_core.pictures.canvas import INK, Picture, contact_sheet, hue, resized, stacked, text_card
+from flymirage_core.pictures.flights import flight_over_time, flights_by_speed
 from flymirage_core.pictures.floor_plan import FloorPlan
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.frames import FlightFrames, Frames
@@ -101,16 +102,16 @@ def task_sets(stage: Stage, product: TaskSets, world: World, boxes: BoxMap) -> P
 
 
 def trajectories(stage: Stage, product: Trajectories, world: World, boxes: BoxMap, task_sets: TaskSets) -> Picture:
+    """All flights by speed, from above and from the side, and the longest one over time."""
     grid = occupancy_from_splats(world.cloud, world.centre, stage.settings.occupancy)
-    plan = _plan(grid, world.centre)
-    plan.boxes(boxes)
-    for flight in product:
-        plan.path(flight.positions, hue(flight.set_index))
-        plan.dot(flight.positions[0], START, 4)
-        plan.dot(flight.positions[-1], GOAL, 4)
-    s = product.summary()
-    numbers = f"{s['flights']} flights, mean {s['mean_length_m']} m, least clearance {s['min_clearance_m']} m"
-    return plan.with_caption([numbers, "green: start   red: end   one colour for each task set"])
+    maps = flights_by_speed(product, grid, boxes, _heights(world.centre), stage.settings.planner)
+    numbers = [f"{name.replace('_', ' ')}: {value}" for name, value in product.summary().items()]
+    about = text_card("trajectories", ["   ".join(numbers), *sorted({r.reason for r in product.rejected})[:3]])
+    if not product.flights:
+        return stacked([maps, about])
+    longest = max(product, key=lambda f: f.report.length)
+    title = text_card(f"flight {longest.flight_id} to the {boxes.by_id(longest.object_id).label}", [], maps.shape[1])
+    return stacked([about, maps, title, flight_over_time(longest, stage.settings.planner, maps.shape[1])])
 
 
 def frames(stage: Stage, product: Frames, world: World, boxes: BoxMap, trajectories: Trajectories) -> Picture:
@@ -182,7 +183,12 @@ def _doubled(camera: Camera) -> Camera:
 
 
 def _plan(grid: OccupancyGrid, centre: np.ndarray) -> FloorPlan:
-    return FloorPlan.of(grid, (max(0.3, centre[2] - 0.8), centre[2] + 0.6))
+    return FloorPlan.of(grid, _heights(centre))
+
+
+def _heights(centre: np.ndarray) -> tuple[float, float]:
+    """Where most is flown: from a little below c to a little above it."""
+    return max(0.3, centre[2] - 0.8), centre[2] + 0.6
 
 
 def _six(flight: FlightFrames) -> list[int]:

@@ -39,8 +39,9 @@ RAMP_SHARE: Final = 0.8
 """The seed flies at these shares of the speed and acceleration limits."""
 MIN_DISTANCE: Final = 0.05
 """Metres: nothing shorter is a flight."""
-CHECK_STEP: Final = 0.01
-"""Metres between the points of a spline that are tested against the inflated grid."""
+CHECK_STEP: Final = 0.002
+"""Metres between the points of a spline that are tested against the inflated grid: much denser than what the checker
+tests, so that it hardly ever finds a corner cut between them."""
 LIMIT_SHARE: Final = 0.999
 """Accepted flights stay below this share of each limit."""
 

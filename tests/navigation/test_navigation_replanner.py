@@ -63,11 +63,11 @@ def test_position_velocity_and_acceleration_are_continuous_through_every_replan(
 
 def test_a_jump_between_two_pieces_is_seen_by_the_checker():
     room, settings = empty_room(12, 3, 2.6), PlannerSettings()
-    first = fit_bspline(np.linspace(START, START + [2, 0, 0], 9), 0.8)
-    second = fit_bspline(np.linspace(START + [2, 0.05, 0], START + [4, 0, 0], 9), 0.8)
+    first = fit_bspline(np.linspace(START, np.add(START, [2, 0, 0]), 9), 0.8)
+    second = fit_bspline(np.linspace(np.add(START, [2, 0.05, 0]), np.add(START, [4, 0, 0]), 9), 0.8)
     pieces = [(s.control_points, s.interval, s.duration) for s in (first, second)]
     with pytest.raises(PlanningError, match="jumps"):
-        check_flight(pieces, (START, START + [4, 0, 0]), room, keep_clear(room, 0.3), 0.3, settings)
+        check_flight(pieces, (START, np.add(START, [4, 0, 0])), room, keep_clear(room, 0.3), 0.3, settings)
 
 
 def test_a_closed_corridor_is_given_up_with_a_reason():
@@ -78,11 +78,12 @@ def test_a_closed_corridor_is_given_up_with_a_reason():
 def test_the_local_map_knows_what_it_has_come_near_to_and_no_more():
     truth = keep_clear(hidden_wall(), 0.3)
     local = LocalMap(truth, 2.0)
-    assert not local.look_from(START + [2.0, 0.5, 0]) or (local.known.state[60:] == FREE).all()
-    assert local.look_from(START + [4.5, 0.5, 0])
+    local.look_from(np.add(START, [2.0, 0.5, 0]))
+    assert (local.known.state[60:] == FREE).all()
+    assert local.look_from(np.add(START, [4.5, 0.5, 0]))
     assert (local.known.state == OCCUPIED).sum() < (truth.state == OCCUPIED).sum()
     assert ((local.known.state == FREE) | (local.known.state == truth.state)).all()
-    assert not local.look_from(START + [4.5, 0.5, 0])
+    assert not local.look_from(np.add(START, [4.5, 0.5, 0]))
 
 
 @pytest.mark.parametrize("speed", [0.3, 0.9, 1.4])
@@ -126,3 +127,11 @@ def test_task_sets_are_flown_in_receding_mode_and_tracked():
         assert flight.report.end_error < 0.01
         assert flight.report.tracking_position_rms < 0.05
         assert np.abs(flight.velocities[[0, -1]]).max() < 1e-9
+
+
+def test_before_a_wall_without_a_way_round_the_drone_stops_in_the_air():
+    world = keep_clear(fill(empty_room(12, 3, 2.6), (7.0, 0.0, 0.0), (7.2, 3.0, 2.6)), 0.3)
+    replanner = Replanner(LocalMap(world, 2.5), GOAL, 0.3, SETTINGS)
+    with pytest.raises(PlanningError, match="connects"):
+        replanner.fly(START)
+    assert replanner.stops == 1
