@@ -1,5 +1,7 @@
 """Worlds that the user already has: their description, their picture, and reading them out of the store."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
@@ -18,7 +20,8 @@ PICTURE_FOV = np.radians(80.0)
 
 def load_import(store: Store, origin: SceneOrigin, cleaning: CleaningSettings) -> World:
     """The imported world in the metric z-up frame; raises `WorldError` or `ProductError` with one sentence."""
-    return import_world(store.imported_file(origin), origin.up, origin.scale, cleaning)
+    world = import_world(store.imported_file(origin), origin.up, origin.scale, cleaning)
+    return replace(world, notes={**world.notes, "source": origin.file_name})
 
 
 def describe_import(origin: SceneOrigin) -> SceneDescription:
