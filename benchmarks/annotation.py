@@ -112,7 +112,9 @@ def score(
 
 def _in_opening(box: Any, openings: Sequence[np.ndarray]) -> bool:
     """Whether a flat box's middle lies in a window or a door."""
-    return min(box.size) < 0.2 and any((o[0] - 0.15 <= box.centre).all() and (box.centre <= o[1] + 0.15).all() for o in openings)
+    return min(box.size) < 0.2 and any(
+        (o[0] - 0.15 <= box.centre).all() and (box.centre <= o[1] + 0.15).all() for o in openings
+    )
 
 
 def countable(truth: Sequence[Any], views: Iterable[View], max_distance: float) -> list[bool]:

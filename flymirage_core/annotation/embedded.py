@@ -16,10 +16,11 @@ from flymirage_core.annotation.carving import Detections, detections, solid
 from flymirage_core.annotation.colours import colour_name, colour_step, shading_free, to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
-from flymirage_core.annotation.labels import Support, name_box, share_of_green
+from flymirage_core.annotation.labels import Support, is_plant, name_box, name_plant
 from flymirage_core.annotation.merging import merge_parts
-from flymirage_core.annotation.normals import surface_normals
+from flymirage_core.annotation.normals import surface_normals, surface_variation
 from flymirage_core.annotation.parts import PartSet, Surface
+from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.segmentation import (
     colour_parts,
@@ -40,14 +41,11 @@ STRUCTURE_RANGE: Final = 12.0
 NORMAL_RADIUS: Final = 3.0
 """Voxels within which points shape a normal."""
 NORMAL_NEIGHBOURS: Final = 16
+VARIATION_RADIUS: Final = 0.09
+"""Metres within which roughness is judged."""
 STRUCTURE_NEIGHBOURS: Final = 12
 HALF_AN_OBJECT: Final = 0.5
 """Metres that an object may reach beyond its centre: so much farther than the limit its own pixels may lie."""
-MAX_SIDE: Final = 4.5
-"""Metres; larger things are a part of the building that was not recognised."""
-MIN_SIDE: Final = 0.08
-"""Metres; a box whose longest side is less is noise."""
-MIN_OBJECT_POINTS: Final = 25
 DUPLICATE_IOU: Final = 0.5
 FULL_EVIDENCE: Final = 12
 """Supporting views from which more add nothing to the score."""
@@ -105,16 +103,14 @@ class EmbeddedAnnotator:
 def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
     """Boxes of the objects in a cloud of solid points, floor to ceiling and then by place."""
     objects = np.flatnonzero(~structure.contains(cloud.points))
-    normals = surface_normals(
-        cloud.points[objects], cloud.to_camera[objects], NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS
-    )
+    normals = surface_normals(cloud.points[objects], cloud.to_camera[objects], NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS)
     bulk = ~structure.is_wall_skin(cloud.points[objects], normals)
     objects = objects[bulk]
     surface = _surface(cloud[objects], normals[bulk], structure, voxel)
     parts = colour_parts(surface)
     merge_parts(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure)
-    boxes = [box for box in boxes if _is_object(box, structure)]
+    boxes = [box for box in boxes if is_thing(box, structure)]
     boxes += wall_objects(cloud.points, shading_free(to_lab(cloud.colours)), structure)
     return sorted(_without_duplicates(boxes), key=lambda b: (round(b.bottom, 2), b.centre))
 
@@ -153,22 +149,6 @@ def _fitted(parts: PartSet, objects: NDArray[np.intp], cloud: FusedPoints, struc
     ]
 
 
-def _is_object(box: FittedBox, structure: RoomStructure) -> bool:
-    """Whether a box is more than a sliver: left-over edges of walls, floor and ceiling are thin and few points."""
-    short, long = sorted(box.size[:2])
-    height = box.size[2]
-    clearance = box.bottom - structure.floor
-    if max(box.size) < MIN_SIDE or max(box.size) > MAX_SIDE:
-        return False
-    trim = (height < 0.16 and clearance > 1.9 and not box.hanging) or (height < 0.12 and clearance < 0.1)
-    ledge = height < 0.12 and long > 5 * short and structure.wall_gap(box.centre, short) < 0.1
-    skin = height < 0.05 and not box.hanging
-    strip = short < 0.05 and height < 0.35
-    stick = long < 0.14 and ((height < 0.40 and clearance < 0.3) or (height > 0.4 and len(box.members) < 150))
-    speck = len(box.members) < 2 * MIN_OBJECT_POINTS and box.volume < 0.004
-    return not (trim or ledge or skin or strip or stick or speck)
-
-
 def _without_duplicates(boxes: Sequence[FittedBox]) -> list[FittedBox]:
     """Of boxes that overlap by `DUPLICATE_IOU`, the one made from the most points."""
     kept: list[FittedBox] = []
@@ -188,7 +168,10 @@ def _object_box(
     annotator: str,
 ) -> ObjectBox:
     lab = to_lab(cloud.colours[box.members])  # (M, 3)
-    label = name_box(box.size, _support_of(box, boxes, structure), share_of_green(lab))
+    support = _support_of(box, boxes, structure)
+    variation = surface_variation(cloud.points[box.members], VARIATION_RADIUS, NORMAL_NEIGHBOURS)
+    plant = not box.on_wall and is_plant(lab, variation)
+    label = name_plant(box.size, support) if plant else name_box(box.size, support)
     return ObjectBox(
         object_id=number,
         label=label.noun,
@@ -196,7 +179,7 @@ def _object_box(
         size=box.size,
         yaw=box.yaw,
         score=float(0.5 * label.fit + 0.5 * min(1.0, found.views / FULL_EVIDENCE)),
-        label_source="size_prior",
+        label_source="colour and roughness" if plant else "size_prior",
         colour=colour_name(np.median(lab, axis=0)),
         material="",
         supporting_frames=found.views,

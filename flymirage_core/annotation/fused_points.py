@@ -95,7 +95,7 @@ def _in_halo(depth: Float32, focal: float) -> Bool:
     for limit in HALO_DEPTHS:
         side = 2 * int(HALO_WIDTH * focal / limit) + 1
         nearest = cv2.erode(known, np.ones((side, side), np.uint8))
-        halo |= (nearest < limit) & (depth > HALO_RATIO * nearest)
+        halo |= (nearest < limit) & (depth > HALO_RATIO * np.minimum(nearest, limit))
     return halo
 
 

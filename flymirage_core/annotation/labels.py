@@ -14,13 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 UNKNOWN: Final = "object"
 MAX_MISFIT: Final = 2.6
 """Root of the summed squared deviations, in standard deviations, beyond which sizes do not fit a noun."""
-CLEAR_MARGIN: Final = 0.35
+CLEAR_MARGIN: Final = 0.45
 """By so much smaller a misfit must one noun win over another family's to be believed."""
 GREEN_HUE: Final = (100.0, 165.0)
 """Degrees, atan2(b, a) of CIELAB, of leaves."""
 GREEN_CHROMA: Final = 14.0
-MIN_GREEN_SHARE: Final = 0.30
-"""Of its points, for a thing to be a plant."""
+MIN_GREEN_SHARE: Final = 0.35
+"""Of its points, for a thing to be a plant ..."""
+MIN_LEAF_VARIATION: Final = 0.065
+"""... whose green points have at least this median `surface_variation`: leaves are rough, green cabinets are not."""
 
 
 class Support(Enum):
@@ -41,6 +43,7 @@ class UsualSize:
     support: Support
     size: tuple[float, float, float]
     spread: tuple[float, float, float] = (0.2, 0.2, 0.2)  # standard deviations of the logarithms
+    rarity: float = 0.0  # added to the misfit: by so much better must a rare thing fit than a common one
 
 
 _F, _S, _W, _C = Support.FLOOR, Support.SURFACE, Support.WALL, Support.CEILING
@@ -73,17 +76,17 @@ USUAL_SIZES: Final = (
     UsualSize("basket", "container", _F, (0.44, 0.42, 0.38), (0.15, 0.15, 0.15)),
     UsualSize("box", "container", _F, (0.52, 0.42, 0.4), (0.18, 0.18, 0.18)),
     UsualSize("waste bin", "container", _F, (0.35, 0.33, 0.6), (0.15, 0.15, 0.17)),
-    UsualSize("barrel", "barrel", _F, (0.6, 0.58, 0.88), (0.08, 0.08, 0.08)),
-    UsualSize("machine", "machine", _F, (1.45, 0.9, 1.4), (0.2, 0.15, 0.15)),
+    UsualSize("barrel", "barrel", _F, (0.6, 0.58, 0.88), (0.08, 0.08, 0.08), rarity=0.8),
+    UsualSize("machine", "machine", _F, (1.45, 0.9, 1.4), (0.2, 0.15, 0.15), rarity=0.8),
     UsualSize("suitcase", "suitcase", _F, (0.46, 0.28, 0.8), (0.12, 0.15, 0.18)),
-    UsualSize("sign", "sign", _F, (0.8, 0.38, 1.6), (0.2, 0.25, 0.1)),
-    UsualSize("traffic cone", "traffic cone", _F, (0.37, 0.36, 0.7), (0.08, 0.08, 0.1)),
-    UsualSize("gas cylinder", "gas cylinder", _F, (0.29, 0.28, 1.35), (0.1, 0.1, 0.12)),
-    UsualSize("column", "column", _F, (0.46, 0.44, 2.8), (0.15, 0.15, 0.08)),
+    UsualSize("sign", "sign", _F, (0.8, 0.38, 1.6), (0.2, 0.25, 0.1), rarity=0.8),
+    UsualSize("traffic cone", "traffic cone", _F, (0.37, 0.36, 0.7), (0.08, 0.08, 0.1), rarity=0.8),
+    UsualSize("gas cylinder", "gas cylinder", _F, (0.29, 0.28, 1.35), (0.1, 0.1, 0.12), rarity=0.8),
+    UsualSize("column", "column", _F, (0.46, 0.44, 2.8), (0.15, 0.15, 0.08), rarity=0.8),
     UsualSize("table lamp", "lamp", _S, (0.3, 0.29, 0.48), (0.15, 0.15, 0.15)),
     UsualSize("vase", "vase", _S, (0.21, 0.2, 0.34), (0.18, 0.18, 0.18)),
     UsualSize("bowl", "bowl", _S, (0.32, 0.31, 0.14), (0.15, 0.15, 0.2)),
-    UsualSize("books", "books", _S, (0.28, 0.22, 0.19), (0.15, 0.15, 0.3)),
+    UsualSize("books", "books", _S, (0.28, 0.22, 0.19), (0.15, 0.15, 0.3), rarity=0.5),
     UsualSize("monitor", "screen", _S, (0.58, 0.19, 0.46), (0.12, 0.2, 0.12)),
     UsualSize("television", "screen", _S, (1.15, 0.2, 0.7), (0.15, 0.4, 0.15)),
     UsualSize("laptop", "laptop", _S, (0.36, 0.26, 0.24), (0.1, 0.12, 0.12)),
@@ -118,20 +121,24 @@ class Label:
     fit: float
 
 
-def name_box(size: ArrayLike, support: Support, green_share: float) -> Label:
-    """The noun for a box of ``size`` (3,) metres with ``green_share`` of its points of the colour of leaves.
+def name_plant(size: ArrayLike, support: Support) -> Label:
+    """The noun for a plant of ``size`` (3,) metres."""
+    tall = support is Support.SURFACE and float(np.asarray(size)[2]) >= PLANT_SHRUB
+    return Label(PLANTS[Support.FLOOR if tall else support], 1.0)
 
-    >>> name_box((0.9, 2.0, 0.85), Support.FLOOR, 0.0).noun
+
+def name_box(size: ArrayLike, support: Support) -> Label:
+    """The noun for a box of ``size`` (3,) metres that is no plant.
+
+    >>> name_box((0.9, 2.0, 0.85), Support.FLOOR).noun
     'sofa'
-    >>> name_box((3.0, 3.0, 0.3), Support.FLOOR, 0.0).noun
+    >>> name_box((3.0, 3.0, 0.3), Support.FLOOR).noun
     'object'
     """
     x, y, z = (max(float(s), 0.02) for s in np.asarray(size, float))
-    if green_share >= MIN_GREEN_SHARE:
-        return Label(PLANTS[support] if z < PLANT_SHRUB or support != _S else PLANTS[_F], min(1.0, 2 * green_share))
     measured = np.log([max(x, y), min(x, y), z])
     misfits = sorted(
-        (float(np.linalg.norm((measured - np.log(k.size)) / k.spread)), i)
+        (float(np.linalg.norm((measured - np.log(k.size)) / k.spread)) + k.rarity, i)
         for i, k in enumerate(USUAL_SIZES)
         if k.support is support
     )
@@ -148,10 +155,14 @@ def name_box(size: ArrayLike, support: Support, green_share: float) -> Label:
     return Label(UNKNOWN, fit / 2)
 
 
-def share_of_green(lab: NDArray[np.float32]) -> float:
-    """Share of colours (N, 3), plain CIELAB, that are those of leaves."""
-    if len(lab) == 0:
-        return 0.0
+def green(lab: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """(N,) which colours (N, 3), plain CIELAB, are those of leaves."""
     hue = np.degrees(np.arctan2(lab[:, 2], lab[:, 1]))
     chroma = np.hypot(lab[:, 1], lab[:, 2])
-    return float(((hue > GREEN_HUE[0]) & (hue < GREEN_HUE[1]) & (chroma > GREEN_CHROMA)).mean())
+    return np.asarray((hue > GREEN_HUE[0]) & (hue < GREEN_HUE[1]) & (chroma > GREEN_CHROMA))
+
+
+def is_plant(lab: NDArray[np.float32], variation: NDArray[np.float32]) -> bool:
+    """Whether points with colours (N, 3), plain CIELAB, and `surface_variation` (N,) are a plant: green and rough."""
+    leaves = green(lab)
+    return bool(leaves.mean() >= MIN_GREEN_SHARE and np.median(variation[leaves]) >= MIN_LEAF_VARIATION)

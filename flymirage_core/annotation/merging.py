@@ -35,11 +35,6 @@ MAX_CONTENT: Final = 0.5
 """Metres; larger things in a shelf are things of their own."""
 ENCLOSED: Final = 0.5
 """A shelf has at the height of its contents this share of the points per metre that it has over all; a table has legs."""
-LEDGE_CLEARANCE: Final = 0.8
-LEDGE_DEPTH: Final = 0.35
-LEDGE_HEIGHT: Final = 0.2
-HANGING_CLEARANCE: Final = 1.4
-HANGING_GAP: Final = 0.3
 
 
 def merge_parts(parts: PartSet) -> None:
@@ -54,8 +49,6 @@ def merge_parts(parts: PartSet) -> None:
     _join_panels(parts)
     _join_thin_pieces(parts)
     _join_contents(parts)
-    _join_ledges(parts)
-    _join_hanging(parts)
     _join_legs(parts)
 
 
@@ -244,35 +237,6 @@ def _encloses(body: Part, piece: Part) -> bool:
     heights = body.points[:, 2]
     beside = ((heights > piece.lower[2]) & (heights < piece.upper[2])).mean()
     return bool(beside > ENCLOSED * piece.extent[2] / max(float(body.extent[2]), 0.05))
-
-
-def _join_ledges(parts: PartSet) -> None:
-    """A board on a wall and the small things on it are one wall shelf."""
-    for i in sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k)):
-        if i not in parts.parts:
-            continue
-        board = parts.parts[i]
-        narrow = board.footprint.size.min() < LEDGE_DEPTH and board.extent[2] < LEDGE_HEIGHT
-        if not narrow or board.clearance < LEDGE_CLEARANCE or board.table[0] < 0.04:
-            continue
-        plan, height = board.footprint, board.table[1]
-        for j in [k for k, p in sorted(parts.parts.items()) if k != i and abs(p.lower[2] - height) < 0.12]:
-            if parts.parts[j].extent.max() < MAX_CONTENT and plan.share_inside(parts.parts[j].points, 0.08) > 0.7:
-                i = parts.join(i, j)
-
-
-def _join_hanging(parts: PartSet) -> None:
-    """Pieces one above the other, high over the floor: a lamp's shade and its canopy, a pot and its leaves."""
-    high = [k for k in sorted(parts.parts) if parts.parts[k].clearance > HANGING_CLEARANCE]
-    for n, i in enumerate(high):
-        for j in high[n + 1 :]:
-            if i not in parts.parts or j not in parts.parts:
-                continue
-            a, b = parts.parts[i], parts.parts[j]
-            gap = max(a.lower[2] - b.upper[2], b.lower[2] - a.upper[2])
-            apart = np.linalg.norm(a.footprint.centre - b.footprint.centre)
-            if gap < HANGING_GAP and apart < 0.4 * max(a.footprint.size.max(), b.footprint.size.max()):
-                i = parts.join(i, j)
 
 
 def _join_legs(parts: PartSet) -> None:

@@ -1,5 +1,6 @@
-"""Surface normals of fused points, by principal components of each point's neighbourhood."""
+"""Surface normals and roughness of fused points, by principal components of each point's neighbourhood."""
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -24,19 +25,39 @@ def surface_normals(points: Float32, to_camera: Float32, radius: float, neighbou
         neighbours: most that are used.
     """
     normals = np.zeros((len(points), 3), np.float32)
+    for part, counts, covariances in _neighbourhoods(points, radius, neighbours):
+        normal = np.linalg.eigh(covariances)[1][:, :, 0]  # (B, 3) of the least eigenvalue
+        normal *= np.where((normal * to_camera[part]).sum(axis=1) < 0, -1, 1)[:, None]
+        normals[part] = np.where((counts >= MIN_NEIGHBOURS)[:, None], normal, 0)
+    return normals
+
+
+def surface_variation(points: Float32, radius: float, neighbours: int) -> Float32:
+    """(N,) least eigenvalue of each neighbourhood over the sum of all three (Pauly, Gross & Kobbelt 2002).
+
+    0 on a plane, about 0.02 on a vase, 0.1 in leaves, 1/3 in a cloud without direction; 0 where too few points are near.
+    """
+    variation = np.zeros(len(points), np.float32)
+    for part, counts, covariances in _neighbourhoods(points, radius, neighbours):
+        values = np.linalg.eigvalsh(covariances)  # (B, 3) ascending
+        share = values[:, 0] / np.maximum(values.sum(axis=1), 1e-12)
+        variation[part] = np.where(counts >= MIN_NEIGHBOURS, share, 0)
+    return variation
+
+
+def _neighbourhoods(
+    points: Float32, radius: float, neighbours: int
+) -> Iterator[tuple[slice, NDArray[np.intp], NDArray[np.float64]]]:
+    """Batches of points: (which, number of neighbours (B,), covariance of the neighbourhood times their number (B, 3, 3))."""
     if len(points) < MIN_NEIGHBOURS:
-        return normals
+        return
     tree = cKDTree(points)
     for first in range(0, len(points), BATCH):
         part = slice(first, first + BATCH)
         distances, index = tree.query(points[part], k=neighbours, distance_upper_bound=radius)  # (B, k)
         found = np.isfinite(distances)
         counts = found.sum(axis=1)  # (B,)
-        near = points[np.where(found, index, 0)]  # (B, k, 3)
+        near = points[np.where(found, index, 0)].astype(np.float64)  # (B, k, 3)
         mean = (near * found[..., None]).sum(axis=1) / counts[:, None]
         spread = (near - mean[:, None]) * found[..., None]
-        _, vectors = np.linalg.eigh(np.swapaxes(spread, 1, 2) @ spread)  # (B, 3, 3) ascending
-        normal = vectors[:, :, 0]
-        normal *= np.where((normal * to_camera[part]).sum(axis=1) < 0, -1, 1)[:, None]
-        normals[part] = np.where((counts >= MIN_NEIGHBOURS)[:, None], normal, 0)
-    return normals
+        yield part, counts, np.swapaxes(spread, 1, 2) @ spread

@@ -40,11 +40,6 @@ MAX_SHARE: Final = 0.6
 COMPARTMENT: Final = (0.12, 0.75)
 """Metres above a face: another level face at this height over most of it makes it the inside of a shelf, not a top."""
 COVERED: Final = 0.5
-MAX_LEDGE: Final = 0.3
-"""Metres of depth of a wall shelf."""
-MIN_LEDGE_SPACE: Final = 0.15
-MIN_BODY_POINTS: Final = 20
-"""Points below a face, from which it is the top of a body."""
 
 
 @dataclass(frozen=True)
@@ -64,8 +59,6 @@ def standing_things(points: Float32, normals: Float32, edges: Index, floor: floa
     things = np.zeros(len(points), np.intp)
     number = 0
     for face in _tops(level_faces(points, normals, edges, floor, yaw)):
-        if _is_ledge(face, points, floor):
-            continue
         for members in _on_face(face, points, edges):
             number += 1
             things[members] = number
@@ -102,14 +95,6 @@ def _tops(faces: list[Face]) -> list[Face]:
         )
 
     return [face for face in faces if not compartment(face)]
-
-
-def _is_ledge(face: Face, points: Float32, floor: float) -> bool:
-    """Whether a face is a narrow board with nothing below it: it and what stands on it are one wall shelf."""
-    if face.plan.size.min() > MAX_LEDGE:
-        return False
-    below = (points[:, 2] > floor + MIN_FACE_HEIGHT) & (points[:, 2] < face.height - MIN_LEDGE_SPACE)
-    return bool((np.abs(face.plan.local(points[below])) < face.plan.size / 2 + 0.05).all(axis=1).sum() < MIN_BODY_POINTS)
 
 
 def _on_face(face: Face, points: Float32, edges: Index) -> list[Index]:

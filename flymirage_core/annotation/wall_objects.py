@@ -26,6 +26,8 @@ FRONT_PERCENTILE: Final = 75
 MIN_AREA: Final = 0.06
 """Square metres."""
 MIN_SIDE: Final = 0.15
+MAX_SHORT_SIDE: Final = 1.6
+"""Metres; what is larger both ways is a part of the wall."""
 MIN_FILL: Final = 0.55
 """Least share of the bounding rectangle: flat things are rectangles or discs, shadows are not."""
 MIN_HEIGHT: Final = 0.25
@@ -118,5 +120,5 @@ def _bare_regions(seen: NDArray[np.bool_], labels: NDArray[np.int32]) -> list[in
 
 
 def _is_flat_thing(width: float, height: float, area: float, clearance: float) -> bool:
-    large = area >= MIN_AREA and min(width, height) >= MIN_SIDE
-    return large and area >= MIN_FILL * width * height and (clearance >= MIN_HEIGHT or height >= MIN_TALL)
+    sizes = area >= MIN_AREA and min(width, height) >= MIN_SIDE and min(width, height) <= MAX_SHORT_SIDE
+    return sizes and area >= MIN_FILL * width * height and (clearance >= MIN_HEIGHT or height >= MIN_TALL)

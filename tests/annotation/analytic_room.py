@@ -69,7 +69,9 @@ def block(name: str, place: Sequence[float], size: Sequence[float], colour: Sequ
     return Thing(name, tuple(place), yaw, (Body((0, 0, size[2] / 2), tuple(size), tuple(colour)),))
 
 
-def table(place: Sequence[float], colour: Sequence[int], size: Sequence[float] = (1.5, 0.8, 0.74), yaw: float = 0.0) -> Thing:
+def table(
+    place: Sequence[float], colour: Sequence[int], size: Sequence[float] = (1.5, 0.8, 0.74), yaw: float = 0.0
+) -> Thing:
     w, d, h = size
     top = Body((0, 0, h - 0.02), (w, d, 0.04), tuple(colour))
     legs = [
@@ -82,9 +84,7 @@ def table(place: Sequence[float], colour: Sequence[int], size: Sequence[float] =
 
 def chair(place: Sequence[float], colour: Sequence[int], yaw: float = 0.0) -> Thing:
     """Its back is on its -y side."""
-    legs = [
-        Body((x * 0.19, y * 0.19, 0.21), (0.05, 0.05, 0.42), tuple(colour)) for x in (-1, 1) for y in (-1, 1)
-    ]
+    legs = [Body((x * 0.19, y * 0.19, 0.21), (0.05, 0.05, 0.42), tuple(colour)) for x in (-1, 1) for y in (-1, 1)]
     seat = Body((0, 0, 0.44), (0.44, 0.44, 0.05), tuple(colour))
     back = Body((0, -0.2, 0.68), (0.44, 0.04, 0.46), tuple(colour))
     return Thing("chair", tuple(place), yaw, (*legs, seat, back))
@@ -102,7 +102,9 @@ def picture(place: Sequence[float], colour: Sequence[int], yaw: float = 0.0) -> 
     return Thing("picture", tuple(place), yaw, (Body((0, -0.02, 0), (0.9, 0.04, 0.65), tuple(colour)),))
 
 
-def sweep(position: Sequence[float], yaws: int = 12, pitches: Sequence[float] = (-35, -10, 15), width: int = 160) -> list[Camera]:
+def sweep(
+    position: Sequence[float], yaws: int = 12, pitches: Sequence[float] = (-35, -10, 15), width: int = 160
+) -> list[Camera]:
     """Cameras at one place, all round, at each pitch in degrees; 90 degrees wide."""
     lens = Intrinsics.from_horizontal_fov(width, width * 3 // 4, np.pi / 2)
     angles = [(2 * np.pi * k / yaws, np.radians(p)) for p in pitches for k in range(yaws)]
@@ -135,7 +137,10 @@ def _render(room: Room, camera: Camera) -> Rendering:
 def _shell(room: Room, position: np.ndarray, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     rotation = _turn(room.yaw)
     origin, local = position @ rotation, rays @ rotation
-    lower, upper = np.array([-room.size[0] / 2, -room.size[1] / 2, 0]), np.array([room.size[0] / 2, room.size[1] / 2, room.size[2]])
+    lower, upper = (
+        np.array([-room.size[0] / 2, -room.size[1] / 2, 0]),
+        np.array([room.size[0] / 2, room.size[1] / 2, room.size[2]]),
+    )
     with np.errstate(divide="ignore", invalid="ignore"):
         exits = np.where(local > 0, (upper - origin) / local, (lower - origin) / local)
     exits = np.where(local == 0, np.inf, exits)

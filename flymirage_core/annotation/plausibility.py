@@ -1,0 +1,77 @@
+"""Which boxes are things and which are left-overs of the building: trim, ledges, panels, frames, slivers."""
+
+from typing import Final
+
+from flymirage_core.annotation.box_fitting import FittedBox
+from flymirage_core.annotation.room_structure import RoomStructure
+
+MIN_OBJECT_POINTS: Final = 25
+LONGEST: Final = 4.5
+"""Metres; larger things are a part of the building that was not recognised."""
+SHORTEST: Final = 0.08
+"""Metres; a box whose longest side is less is noise."""
+HIGH: Final = 1.9
+"""Metres above the floor from which what does not hang freely is trim, or a part of the ceiling."""
+TRIM_HEIGHT: Final = 0.16
+TRIM_GAP: Final = 0.15
+"""Metres to a wall or to the ceiling within which a high thing is fixed to it."""
+LEDGE_HEIGHT: Final = 0.12
+LEDGE_RATIO: Final = 5.0
+"""Length against depth from which a flat thing at a wall is a sill or a skirting board."""
+PANEL_HEIGHT: Final = 1.9
+PANEL_DEPTH: Final = 0.2
+PANEL_GAP: Final = 0.3
+"""Metres to the wall that a panel runs along."""
+FRAME_SIDE: Final = 0.16
+"""Metres; what is as high as a panel and thinner than this both ways is a door frame or the edge of a pillar."""
+SKIN_HEIGHT: Final = 0.05
+"""Metres; the upper face of a support, left over above it."""
+STRIP_DEPTH: Final = 0.05
+STRIP_HEIGHT: Final = 0.35
+STICK_SIDE: Final = 0.14
+"""Metres; thinner things both ways are legs (low), or need many points to be believed (high)."""
+LEG_HEIGHT: Final = 0.4
+LEG_CLEARANCE: Final = 0.3
+MIN_STICK_POINTS: Final = 150
+SPECK_VOLUME: Final = 0.004
+"""Cubic metres of which little evidence is no evidence."""
+
+
+def is_thing(box: FittedBox, structure: RoomStructure) -> bool:
+    """Whether a box made from parts is an object, rather than a left-over."""
+    if not SHORTEST <= max(box.size) <= LONGEST:
+        return False
+    clearance = box.bottom - structure.floor
+    building = _is_trim(box, clearance, structure) or _is_ledge(box, structure) or _is_panel(box, structure)
+    return not (building or _is_sliver(box, clearance))
+
+
+def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool:
+    """High up at a wall, or flat up there; what hangs freely is not."""
+    at_wall = structure.wall_gap(box.centre, min(box.size[:2])) < TRIM_GAP
+    return clearance > HIGH and not box.hanging and (at_wall or box.size[2] < TRIM_HEIGHT)
+
+
+def _is_ledge(box: FittedBox, structure: RoomStructure) -> bool:
+    short, long = sorted(box.size[:2])
+    at_wall = structure.wall_gap(box.centre, short) < TRIM_GAP
+    return box.size[2] < LEDGE_HEIGHT and long > LEDGE_RATIO * short and at_wall
+
+
+def _is_panel(box: FittedBox, structure: RoomStructure) -> bool:
+    short, long = sorted(box.size[:2])
+    if box.size[2] < PANEL_HEIGHT:
+        return False
+    return long < FRAME_SIDE or (short < PANEL_DEPTH and structure.wall_gap(box.centre, short) < PANEL_GAP)
+
+
+def _is_sliver(box: FittedBox, clearance: float) -> bool:
+    short, long = sorted(box.size[:2])
+    height, points = box.size[2], len(box.members)
+    skin = height < SKIN_HEIGHT and not box.hanging
+    rim = height < LEDGE_HEIGHT and clearance < SHORTEST
+    strip = short < STRIP_DEPTH and height < STRIP_HEIGHT
+    leg = long < STICK_SIDE and height < LEG_HEIGHT and clearance < LEG_CLEARANCE
+    stick = long < STICK_SIDE and height > LEG_HEIGHT and points < MIN_STICK_POINTS
+    speck = points < 2 * MIN_OBJECT_POINTS and box.volume < SPECK_VOLUME
+    return skin or rim or strip or leg or stick or speck
