@@ -4,7 +4,7 @@
     python benchmarks/annotation.py generated demo-1 demo-2    # worlds of the embedded world model, by scene key
     python benchmarks/annotation.py captured ROOM.spz ...      # no truth: boxes drawn into views, to be looked at
 
-``--pictures FOLDER`` writes overlays. Pass 1 is the orbit at all distances; pass 2 adds the exploration and cuts at d_th1.
+``--pictures FOLDER`` writes overlays. Pass 1 is the orbit at all distances; pass 2 adds the exploration, cut at d_th1.
 """
 
 import argparse
@@ -181,9 +181,8 @@ def captured(path: str, settings: Settings) -> Scene:
 
 
 def analytic(seed: str, settings: Settings) -> Scene:
-    from furnished_room import furnished_room, grid_of
-
     from analytic_room import views_of
+    from furnished_room import furnished_room, grid_of
 
     room = furnished_room(int(seed))
     return Scene(
@@ -196,7 +195,7 @@ def analytic(seed: str, settings: Settings) -> Scene:
 
 
 MAKERS = {"analytic": analytic, "generated": generated, "captured": captured}
-HEADER = f"{'scene':<16}{'pass':<6}{'views':>6}{'boxes':>6}{'true':>6}{'R.25':>7}{'P.25':>7}{'R.5':>7}{'P.5':>7}{'cm':>6}{'CPU s':>7}"
+HEADER = "scene           pass   views boxes  true   R.25   P.25    R.5    P.5    cm  CPU s"
 
 
 def report(scene: Scene, passes: Passes, settings: Settings) -> None:
@@ -208,7 +207,8 @@ def report(scene: Scene, passes: Passes, settings: Settings) -> None:
         loose, strict = (score(boxes, scene.truth, counted, iou, scene.openings) for iou in (0.25, 0.5))
         print(
             f"{scene.name:<16}{name:<6}{len(views):>6}{len(boxes):>6}{sum(counted):>6}{loose.recall:>7.2f}"
-            f"{loose.precision:>7.2f}{strict.recall:>7.2f}{strict.precision:>7.2f}{100 * loose.centre_error:>6.1f}{seconds:>7.1f}",
+            f"{loose.precision:>7.2f}{strict.recall:>7.2f}{strict.precision:>7.2f}"
+            f"{100 * loose.centre_error:>6.1f}{seconds:>7.1f}",
             flush=True,
         )
 

@@ -1,1 +1,1 @@
-"""Finding objects: oriented boxes from posed RGB-D pictures, Algorithm 1, exploration. Knows rendering and occupancy."""
+"""Finding objects: oriented boxes from posed RGB-D, Algorithm 1, exploration. Knows rendering and occupancy."""

@@ -124,7 +124,7 @@ def _rectangle(xy: Float64, yaw: float, trim: float) -> Footprint:
 def _trimmed_range(values: Float64, trim: float) -> tuple[Float64, Float64]:
     """Per column, the values that ``trim`` per cent lie below and above: order statistics, no interpolation."""
     n = len(values)
-    k = int(round(trim / 100 * (n - 1)))
+    k = round(trim / 100 * (n - 1))
     if k == 0:
         return values.min(axis=0), values.max(axis=0)
     ordered = np.partition(values, (k, n - 1 - k), axis=0)
@@ -138,7 +138,7 @@ def _padded_area(footprint: Footprint) -> float:
 def fit_box(points: Float32, to_camera: Float32, members: NDArray[np.intp], structure: RoomStructure) -> FittedBox:
     """The box round some points, down to the floor if it nearly touches it, and back to a wall close behind.
 
-    ``points``: (N, 3). ``to_camera``: (N, 3) directions to where each was seen from. ``members``: (M,) indices of the box's.
+    ``points``: (N, 3). ``to_camera``: (N, 3) directions to where each was seen from. ``members``: (M,) its points.
     """
     cloud = points[members]
     plan = _with_unseen_half(fit_footprint(cloud, structure.yaw), to_camera[members])

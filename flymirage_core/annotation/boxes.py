@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True)
 class ObjectBox:
-    """One object. World frame (z up), metres; ``yaw`` turns the box's x axis from world +x, counter-clockwise, radians."""
+    """One object. World frame (z up), metres; ``yaw`` turns its x axis from world +x, counter-clockwise, radians."""
 
     object_id: int
     label: str  # a noun in lower case: "office chair"; "object" where nothing better is known
@@ -51,12 +51,12 @@ class ObjectBox:
 
     def contains(self, points: ArrayLike, margin: float = 0.0) -> NDArray[np.bool_]:
         """True (...,) where world points (..., 3) lie in the box grown by ``margin`` metres on each side."""
-        return (np.abs(self.to_local(points)) <= np.asarray(self.size) / 2 + margin).all(axis=-1)
+        return np.asarray((np.abs(self.to_local(points)) <= np.asarray(self.size) / 2 + margin).all(axis=-1))
 
     def distance(self, points: ArrayLike) -> NDArray[np.float64]:
         """Metres (...,) from world points (..., 3) to the box's surface; 0 inside."""
         outside = np.maximum(np.abs(self.to_local(points)) - np.asarray(self.size) / 2, 0.0)
-        return np.linalg.norm(outside, axis=-1)
+        return np.asarray(np.linalg.norm(outside, axis=-1))
 
 
 BOX_SCHEMA = pa.schema(

@@ -44,7 +44,7 @@ def detections(
 ) -> list[Detections]:
     """For each box, the frames within ``max_distance`` metres of its centre that hit its points (N, 3) often enough.
 
-    The paper's pruning of single detections (section III-B): what lies beyond d_th1 of the optical centre does not count.
+    The paper's pruning of single detections (section III-B): what lies beyond d_th1 of the camera does not count.
     """
     owner = np.full(len(points), -1, np.int64)
     for k, box in enumerate(boxes):

@@ -23,18 +23,20 @@ HUES: Final = (
     ("yellow", 94.0),
     ("green", 145.0),
     ("teal", 200.0),
-    ("blue", 272.0),
-    ("purple", 318.0),
+    ("blue", 280.0),
+    ("purple", 322.0),
     ("pink", 358.0),
 )
 """Basic names and their hue angles in degrees (atan2(b, a) of CIELAB)."""
-DARK: Final = 38.0
+DARK: Final = 30.0
 LIGHT: Final = 72.0
 
 
 def to_lab(rgb: ArrayLike) -> Float32:
     """CIELAB (N, 3), L 0..100, of sRGB colours (N, 3) 0..255."""
     colours = np.asarray(rgb, np.float32).reshape(1, -1, 3) / 255
+    if colours.size == 0:
+        return np.zeros((0, 3), np.float32)
     return np.asarray(cv2.cvtColor(np.ascontiguousarray(colours), cv2.COLOR_RGB2LAB)[0], np.float32)
 
 
@@ -56,8 +58,8 @@ def colour_step(a: Float32, b: Float32) -> Float32:
 def colour_name(lab: ArrayLike) -> str:
     """A basic colour name with "dark" or "light" where that helps.
 
-    >>> colour_name(to_lab([[200, 30, 30]])[0]), colour_name(to_lab([[20, 60, 20]])[0]), colour_name(to_lab([[250] * 3])[0])
-    ('red', 'dark green', 'white')
+    >>> [colour_name(lab) for lab in to_lab([[200, 30, 30], [20, 60, 20], [250, 250, 250]])]
+    ['red', 'dark green', 'white']
     """
     lightness, a, b = (float(x) for x in np.asarray(lab, float))
     chroma = float(np.hypot(a, b))

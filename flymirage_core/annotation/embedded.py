@@ -1,7 +1,7 @@
 """`EmbeddedAnnotator`: objects from pixels and depth alone, with no network, no GPU and no learned weights.
 
-Fuse the pixels of all views, take the building away, cut what is left by colour, join what belongs together, fit boxes, name
-them. Each step is a file of this room.
+Fuse the pixels of all views, take the building away, cut what is left by support and colour, join what belongs
+together, fit boxes, name them. Each step is a file of this room.
 """
 
 from collections.abc import Iterable, Sequence

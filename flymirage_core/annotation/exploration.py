@@ -71,8 +71,8 @@ def exploration_paths(
 ) -> list[ExplorationPath]:
     """One path from c for each target: A* in the inflated grid, collision-aware Laplacian smoothing, equal spacing.
 
-    A path ends at the free place nearest to c from which the target's box is within ``stand_off``; where no such place can
-    be reached, at the reachable place nearest to the box, and `ExplorationPath.reached` is False.
+    A path ends at the free place nearest to c from which the target's box is within ``stand_off``; where no such place
+    can be reached, at the reachable place nearest to the box, and `ExplorationPath.reached` is False.
 
     Raises:
         PlanningError: c has no free space round it.
@@ -94,8 +94,8 @@ def _inflated_round(grid: OccupancyGrid, centre: Float64, clearance: float) -> t
         except PlanningError:
             continue
     raise PlanningError(
-        f"exploration: nowhere within {CENTRE_TOLERANCE:g} m of the scene centre is {CLEARANCE_STEPS[-1] * clearance:g} m "
-        "clear of obstacles; give another centre, or lower exploration.clearance"
+        f"exploration: nowhere within {CENTRE_TOLERANCE:g} m of the scene centre is "
+        f"{CLEARANCE_STEPS[-1] * clearance:g} m clear of obstacles; give another centre, or lower exploration.clearance"
     )
 
 
@@ -112,7 +112,7 @@ def _path_to(
 
 
 def _viewpoint(box: ObjectBox, start: Float64, places: Float64, stand_off: float) -> Float64:
-    """The place (3,) to look at the box from: of those within the stand-off the nearest to c, else the nearest to the box."""
+    """The place (3,) to look from: of those within the stand-off the nearest to c, else the nearest to the box."""
     gaps = box.distance(places)  # (M,)
     near = gaps <= stand_off
     if not near.any():
@@ -124,8 +124,8 @@ def _viewpoint(box: ObjectBox, start: Float64, places: Float64, stand_off: float
 def smooth_headings(positions: Float64) -> Float64:
     """(K,) azimuth of the temporally smoothed tangent at each position (K, 3); 0 where the path has no horizontal part.
 
-    Unit tangents are averaged, not angles, so that nothing happens at +-pi; where a path climbs straight up, the heading of
-    its neighbours holds.
+    Unit tangents are averaged, not angles, so that nothing happens at +-pi; where a path climbs straight up, the
+    heading of its neighbours holds.
     """
     if len(positions) < 2:
         return np.zeros(len(positions))

@@ -1,11 +1,11 @@
-"""Pixels of all views averaged in voxels: `Frame`, one view made ready, and `FusedPoints`, the coloured surface they share.
+"""Pixels of all views averaged in voxels: `Frame`, a view made ready, and `FusedPoints`, the surface that they share.
 
 Depth of splats is mixed at edges; the edge test throws those pixels away. Nothing here knows what an object is.
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, TypeVar
 
 import cv2
 import numba
@@ -17,6 +17,7 @@ from flymirage_core.rendering.views import View
 
 Float32 = NDArray[np.float32]
 Bool = NDArray[np.bool_]
+Scalar = TypeVar("Scalar", bound=np.generic)
 
 MIN_DEPTH: Final = 0.15
 """Metres; nearer than this a splat depth is a smear on the lens."""
@@ -34,8 +35,8 @@ HALO_RATIO: Final = 1.4
 MIN_INCIDENCE: Final = 0.2
 """Cosine between a pixel's ray and its surface's normal below which depth is not believed."""
 SQUARE: Final = 0.96
-"""Cosine between optical axis and normal from which a surface is seen squarely. A splat's depth is that of its middle and the
-nearer ones hide the others, so surfaces at a slant come out too near, by up to a splat's radius."""
+"""Cosine between optical axis and normal from which a surface is seen squarely. A splat's depth is that of its middle
+and the nearer ones hide the others, so surfaces at a slant come out too near, by up to a splat's radius."""
 NEAREST_WEIGHT_RANGE: Final = 0.5
 """Metres; pixels weigh 1/range^2, those nearer than this all the same."""
 
@@ -76,7 +77,7 @@ class FusedPoints:
 def frame_of(view: View) -> Frame:
     """Clean a view's depth and mark the pixels whose depth is that of one surface."""
     picture = view.picture
-    depth = cv2.medianBlur(np.ascontiguousarray(picture.depth, np.float32), 3)  # (H, W)
+    depth = np.asarray(cv2.medianBlur(np.ascontiguousarray(picture.depth, np.float32), 3), np.float32)  # (H, W)
     depth[(depth < MIN_DEPTH) | ~np.isfinite(depth) | (picture.alpha < MIN_ALPHA)] = 0
     some = depth > 0
     disparity = np.where(some, 1 / np.maximum(depth, MIN_DEPTH), 0).astype(np.float32)
@@ -89,7 +90,7 @@ def frame_of(view: View) -> Frame:
 
 
 def _in_halo(depth: Float32, focal: float) -> Bool:
-    """(H, W) pixels behind the soft rim of something nearer, which is wider the nearer it is: their depth is a mixture."""
+    """(H, W) pixels behind the soft rim of something near, wider the nearer it is: their depth is a mixture."""
     known = np.where(depth > 0, depth, np.inf).astype(np.float32)
     halo = np.zeros(depth.shape, bool)
     for limit in HALO_DEPTHS:
@@ -129,8 +130,8 @@ def frames_of(views: Iterable[View]) -> list[Frame]:
 def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> FusedPoints:
     """Average the trusted pixels of all frames in voxels of edge ``voxel`` metres.
 
-    Only pixels within ``max_distance`` metres of their own optical centre enter: the paper's d_th1 (section III-B). Colour
-    and place are means weighted by (incidence / range)^2: splat depth errs askance, and by a share of the range.
+    Only pixels within ``max_distance`` metres of their own optical centre enter. Colour and place are means weighted by
+    (incidence / range)^2: splat depth errs askance, and by a share of the range.
     """
     slots = np.full(1 << 16, -1, np.int64)  # open-addressing hash table: row of each key
     keys = np.empty(1 << 15, np.int64)
@@ -140,7 +141,7 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
     for index, frame in enumerate(frames):
         needed = count + frame.depth.size
         if needed > len(keys):
-            keys, rows, last = (_grown(a, 2 * needed) for a in (keys, rows, last))
+            keys, rows, last = _grown(keys, 2 * needed), _grown(rows, 2 * needed), _grown(last, 2 * needed)
         if 2 * needed > len(slots):
             slots = np.full(1 << int(2 * needed).bit_length(), -1, np.int64)
             _rehash(keys, count, slots)
@@ -152,7 +153,7 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
     return _collected(keys[:count], rows[:count])
 
 
-def _grown(array: NDArray[np.generic], length: int) -> NDArray[np.generic]:
+def _grown(array: NDArray[Scalar], length: int) -> NDArray[Scalar]:
     out = np.empty((length, *array.shape[1:]), array.dtype)
     out[: len(array)] = array
     return out

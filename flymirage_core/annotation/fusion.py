@@ -1,7 +1,7 @@
 """Boxes compared and fused: yaw IoU, the distance-based pruning of single detections, clusters fused to one box each.
 
-A detector that answers view by view (Boxer) goes through `prune_by_distance` and `fuse_detections`; the embedded annotator
-fuses evidence before it makes boxes and uses the IoU only.
+A detector that answers view by view (Boxer) goes through `prune_by_distance` and `fuse_detections`; the embedded
+annotator fuses evidence before it makes boxes and uses the IoU only.
 """
 
 from collections.abc import Sequence
@@ -76,7 +76,7 @@ def yaw_iou(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
 
 
 def prune_by_distance(detections: Sequence[Detection], max_distance: float) -> list[Detection]:
-    """The paper's pruning (section III-B): only detections whose centre lies within ``max_distance`` of their own camera."""
+    """The paper's pruning (section III-B): detections whose centre is within ``max_distance`` of their own camera."""
     return [d for d in detections if np.linalg.norm(np.subtract(d.centre, d.camera_position)) <= max_distance]
 
 
@@ -105,7 +105,9 @@ def _clusters(detections: Sequence[Detection], min_iou: float) -> list[list[int]
     for i in range(len(detections)):
         gaps = np.linalg.norm(centres[i + 1 :] - centres[i], axis=1) - radii[i + 1 :] - radii[i]
         links += [
-            (i, int(j)) for j in np.flatnonzero(gaps < 0) + i + 1 if yaw_iou(detections[i], detections[j]) >= min_iou
+            (i, j)
+            for j in (np.flatnonzero(gaps < 0) + i + 1).tolist()
+            if yaw_iou(detections[i], detections[j]) >= min_iou
         ]
     rows, columns = np.array(links, int).reshape(-1, 2).T
     graph = coo_matrix((np.ones(len(rows)), (rows, columns)), shape=(len(detections), len(detections)))
@@ -165,8 +167,8 @@ def _quarter_turns(angle: float) -> int:
 def _convex_overlap(subject: NDArray[np.float64], clip: NDArray[np.float64]) -> float:
     """Area shared by two convex polygons (A, 2) and (B, 2), counter-clockwise (Sutherland & Hodgman 1974).
 
-    OpenCV's intersectConvexConvex is not used: rectangles that share a part of an edge, as boxes in one room do, get areas
-    that are wrong by up to their whole size.
+    OpenCV's intersectConvexConvex is not used: rectangles that share a part of an edge, as boxes in one room do, get
+    areas that are wrong by up to their whole size.
     """
     polygon = np.empty((16, 2))
     clipped = np.empty((16, 2))

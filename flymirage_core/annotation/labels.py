@@ -1,6 +1,6 @@
-"""Names for boxes from what geometry and colour alone can tell: usual sizes, what a thing stands on, and whether it is green.
+"""Names for boxes from what geometry and colour can tell: usual sizes, what a thing stands on, whether it has leaves.
 
-A noun is given only if the sizes fit it; if nouns of one family fit alike, the family's name is given; all else is "object".
+A noun is given only if the sizes fit it; if nouns of one family fit alike, the family's name is; all else is "object".
 The sizes are those of furniture catalogues; a trained recogniser is a later, better source.
 """
 

@@ -29,12 +29,14 @@ MAX_ABSORBED: Final = 0.34
 MAX_POLE_GAP: Final = 1.1
 """Metres between a foot and a shade whose pole was lost."""
 MAX_LEG_POINTS: Final = 400
+MAX_TABLE_POLE_GAP: Final = 0.25
+MAX_LAMP_SIDE: Final = 0.75
 THIN: Final = 0.12
 """Metres of the shorter side in plan of a panel: a screen on its keyboard, the frame of a trolley."""
 MAX_CONTENT: Final = 0.5
 """Metres; larger things in a shelf are things of their own."""
 ENCLOSED: Final = 0.5
-"""A shelf has at the height of its contents this share of the points per metre that it has over all; a table has legs."""
+"""At the height of its contents a shelf has this share of the points a metre that it has over all; a table has legs."""
 
 
 def merge_parts(parts: PartSet) -> None:
@@ -123,13 +125,16 @@ def _join_lost_poles(parts: PartSet) -> None:
 
 
 def _foot_and_shade(foot: Part, shade: Part) -> bool:
+    """Whether one is right above the other, both small, the foot on the floor or a support, the shade on nothing."""
     gap = float(shade.lower[2] - foot.upper[2])
+    max_gap = MAX_TABLE_POLE_GAP if foot.thing else MAX_POLE_GAP
     return bool(
-        foot.clearance <= 0.25
+        (foot.clearance <= 0.25 or foot.thing)
+        and not shade.thing
         and shade.clearance > 0.3
-        and -0.05 < gap < MAX_POLE_GAP
+        and -0.05 < gap < max_gap
         and np.linalg.norm(foot.centre[:2] - shade.centre[:2]) <= 0.12
-        and max(foot.extent[:2].max(), shade.extent[:2].max()) <= 0.75
+        and max(foot.extent[:2].max(), shade.extent[:2].max()) <= MAX_LAMP_SIDE
         and foot.table[0] < 0.12
     )
 

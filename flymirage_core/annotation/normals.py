@@ -35,7 +35,7 @@ def surface_normals(points: Float32, to_camera: Float32, radius: float, neighbou
 def surface_variation(points: Float32, radius: float, neighbours: int) -> Float32:
     """(N,) least eigenvalue of each neighbourhood over the sum of all three (Pauly, Gross & Kobbelt 2002).
 
-    0 on a plane, about 0.02 on a vase, 0.1 in leaves, 1/3 in a cloud without direction; 0 where too few points are near.
+    0 on a plane, about 0.02 on a vase, 0.1 in leaves, 1/3 in a cloud without direction; 0 where points are too few.
     """
     variation = np.zeros(len(points), np.float32)
     for part, counts, covariances in _neighbourhoods(points, radius, neighbours):
@@ -48,7 +48,7 @@ def surface_variation(points: Float32, radius: float, neighbours: int) -> Float3
 def _neighbourhoods(
     points: Float32, radius: float, neighbours: int
 ) -> Iterator[tuple[slice, NDArray[np.intp], NDArray[np.float64]]]:
-    """Batches of points: (which, number of neighbours (B,), covariance of the neighbourhood times their number (B, 3, 3))."""
+    """Batches of points: (which, number of neighbours (B,), covariance of them times their number (B, 3, 3))."""
     if len(points) < MIN_NEIGHBOURS:
         return
     tree = cKDTree(points)

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +42,7 @@ class Part:
 
     @cached_property
     def points(self) -> Float32:
-        return self.surface.points[self.members]  # (M, 3)
+        return np.asarray(self.surface.points[self.members])  # (M, 3)
 
     @cached_property
     def colour(self) -> Float32:
@@ -53,19 +54,19 @@ class Part:
 
     @property
     def lower(self) -> Float32:
-        return self.bounds[0]
+        return np.asarray(self.bounds[0])
 
     @property
     def upper(self) -> Float32:
-        return self.bounds[1]
+        return np.asarray(self.bounds[1])
 
     @property
     def centre(self) -> Float32:
-        return self.bounds.mean(axis=0)
+        return np.asarray(self.bounds.mean(axis=0))
 
     @property
     def extent(self) -> Float32:
-        return self.bounds[1] - self.bounds[0]
+        return np.asarray(self.bounds[1] - self.bounds[0])
 
     @property
     def clearance(self) -> float:
@@ -97,7 +98,7 @@ class PartSet:
         self.labels = labels.copy()  # (N,) part of each point; numbers without a part are too small to be one
         order = np.argsort(labels, kind="stable")
         starts = np.searchsorted(labels[order], np.arange(labels.max() + 2)) if len(labels) else np.zeros(1, int)
-        groups = [order[a:b] for a, b in zip(starts[:-1], starts[1:], strict=True)]
+        groups = [order[a:b] for a, b in pairwise(starts)]
         self.parts = {k: Part(surface, members) for k, members in enumerate(groups) if len(members) >= min_points}
         self._count = len(groups)
 

@@ -1,7 +1,7 @@
 """What is the building and not an object: floor, ceiling, walls, and the direction they run in.
 
-Estimated from a coarse cloud of fused points without a range limit; a room has few planes and they are large, so it does not
-matter that far points are noisy.
+Estimated from a coarse cloud of fused points without a range limit; a room has few planes and they are large, so it
+does not matter that far points are noisy.
 """
 
 from dataclasses import dataclass, replace
@@ -265,8 +265,8 @@ def _aligned(
     turned = []
     for wall in walls:
         normal = rotation @ wall.normal
-        on = upright & (np.abs(points[:, :2] @ normal - wall.offset) < 0.08) & (normals[:, :2] @ normal > 0.9)
-        offset = float(np.median(points[on, :2] @ normal)) if on.any() else wall.offset
+        facing = upright & (np.abs(points[:, :2] @ normal - wall.offset) < 0.08) & (normals[:, :2] @ normal > 0.9)
+        offset = float(np.median(points[facing, :2] @ normal)) if facing.any() else wall.offset
         turned.append(Wall(normal, offset, wall.start, wall.end, offset))
     return yaw + turn, turned
 

@@ -99,7 +99,7 @@ def _oversize(surface: Surface, labels: Index) -> Bool:
 
 
 def _small_absorbed(surface: Surface, labels: Index) -> Index:
-    """Parts below `MIN_PART_POINTS` given to the neighbouring part that is most similar, by summed similarity of edges."""
+    """Parts below `MIN_PART_POINTS` given to the neighbouring part that is most similar, summed over edges."""
     counts = np.bincount(labels)
     a, b = labels[surface.edges[:, 0]], labels[surface.edges[:, 1]]
     border = a != b

@@ -53,8 +53,8 @@ class Face:
 def standing_things(points: Float32, normals: Float32, edges: Index, floor: float, yaw: float) -> Index:
     """(N,) number of the thing on a support that each point belongs to; 0 for what stands on the floor.
 
-    Things are connected where their points are (``edges`` (E, 2)) once the support is cut away beneath them, so two that touch
-    have one number; colour tells them apart later. What stands on a thing that stands on a table has its own number.
+    Things are connected where their points are (``edges`` (E, 2)) once the support is cut away, so two that touch have
+    one number; colour tells them apart later. What stands on a thing on a table has its own number.
     """
     things = np.zeros(len(points), np.intp)
     number = 0

@@ -76,4 +76,4 @@ def azimuth_difference(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
     10.0
     """
     turn = np.abs(np.asarray(a, float) - np.asarray(b, float)) % (2 * np.pi)
-    return np.minimum(turn, 2 * np.pi - turn)
+    return np.asarray(np.minimum(turn, 2 * np.pi - turn))

@@ -1,4 +1,4 @@
-"""Flat things on walls (pictures, mirrors, screens, boards, windows): found by their colour in a raster of each wall."""
+"""Flat things on walls (pictures, mirrors, screens, boards, windows), found by colour in a raster of each wall."""
 
 from typing import Final
 
@@ -88,8 +88,8 @@ def _raster(
 def _things(seen: NDArray[np.bool_], image: Float32) -> NDArray[np.intp]:
     """(H, W) number of the thing that each cell of a wall's raster belongs to, 0 = bare wall or not seen.
 
-    The bare wall is the largest region whose neighbouring cells differ little: light may fade across it as it likes. A thing
-    is what is left, with what it surrounds.
+    The bare wall is the largest region whose neighbouring cells differ little: light may fade across it as it likes. A
+    thing is what is left, with what it surrounds.
     """
     numbers = np.arange(seen.size).reshape(seen.shape)
     pairs = []

@@ -42,7 +42,7 @@ class Thing:
 
 @dataclass(frozen=True)
 class Room:
-    """A closed room ``size`` (x, y, z) metres, floor's middle at the origin, turned by ``yaw``, and what stands in it."""
+    """A closed room of ``size`` (x, y, z) metres, floor's middle at the origin, turned by ``yaw``, and its things."""
 
     size: tuple[float, float, float]
     things: tuple[Thing, ...] = ()

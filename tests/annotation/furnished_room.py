@@ -74,8 +74,8 @@ def _dining_set(random: np.random.Generator) -> list[Thing]:
     colour, seat = _colour(random), _colour(random)
     things = [table(middle, colour), _on_top(random, (middle[0] + 0.3, middle[1], 0.74))]
     for x in (-0.35, 0.35):
-        things.append(chair(middle + [x, -0.5, 0], seat))
-        things.append(chair(middle + [x, 0.5, 0], seat, yaw=np.pi))
+        things.append(chair((middle[0] + x, middle[1] - 0.5, 0.0), seat))
+        things.append(chair((middle[0] + x, middle[1] + 0.5, 0.0), seat, yaw=np.pi))
     return things
 
 
