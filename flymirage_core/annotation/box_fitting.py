@@ -28,6 +28,16 @@ MIN_SUPPORT_SHARE: Final = 0.3
 MAX_SUPPORT_GAP: Final = 1.5
 """Metres down to which a floating thing is taken to reach: thin legs and poles are not seen."""
 NEAR_WALL: Final = 0.12
+PARALLEL: Final = 0.97
+"""Cosine from which a side runs along a wall."""
+MIN_GAP: Final = 0.02
+"""Metres; smaller gaps are none."""
+SUPPORT_SLACK: Final = 0.10
+"""Metres that a support may reach above the bottom of what it carries."""
+MAX_WALL_DROP: Final = 0.3
+"""Metres; what is at a wall and farther above everything is fixed to the wall."""
+COARSE_YAWS: Final = np.radians(np.arange(0, 90, 6.0))
+FINE_YAWS: Final = np.radians([-4.5, -3, -1.5, 0, 1.5, 3, 4.5])
 MAX_WALL_GAP: Final = 0.15
 """Metres to a wall that are taken to belong to the thing: its back is not seen."""
 MAX_TALL_WALL_GAP: Final = 0.75
@@ -107,8 +117,8 @@ def fit_footprint(points: Float32, room_yaw: float, trim: float = TRIM) -> Footp
     step = -(-len(points) // MAX_FIT_POINTS)
     xy = points[::step, :2].astype(np.float64)
     snapped = _rectangle(xy, room_yaw % (np.pi / 2), trim)
-    coarse = min((_rectangle(xy, a, trim) for a in np.radians(np.arange(0, 90, 6.0))), key=_padded_area)
-    near = coarse.yaw + np.radians([-4.5, -3, -1.5, 0, 1.5, 3, 4.5])
+    coarse = min((_rectangle(xy, a, trim) for a in COARSE_YAWS), key=_padded_area)
+    near = coarse.yaw + FINE_YAWS
     best = min((_rectangle(xy, a % (np.pi / 2), trim) for a in near), key=_padded_area)
     return snapped if _padded_area(snapped) < SNAP * _padded_area(best) else best
 
@@ -178,12 +188,12 @@ def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> Fitt
     for wall in structure.walls:
         for axis in (0, 1):
             angle = box.yaw + axis * np.pi / 2
-            if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) < 0.97:
+            if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) < PARALLEL:
                 continue
             depth = box.size[axis]
             gap = float(np.dot(wall.normal, box.centre[:2])) - wall.back - depth / 2
             guessed = tall and depth < SEEN_DEPTH and depth + gap < MAX_TALL_DEPTH
-            if 0.02 < gap < (MAX_TALL_WALL_GAP if guessed else MAX_WALL_GAP):
+            if MIN_GAP < gap < (MAX_TALL_WALL_GAP if guessed else MAX_WALL_GAP):
                 size = list(box.size)
                 size[axis] += gap
                 x, y = np.array(box.centre[:2]) - wall.normal * gap / 2
@@ -203,7 +213,7 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
     support = floor
     for other in boxes:
         around = other.top > box.top and other.bottom < box.bottom
-        if other is box or (other.top > box.bottom + 0.10 and not around):
+        if other is box or (other.top > box.bottom + SUPPORT_SLACK and not around):
             continue
         if footprint_overlap(box, other) > MIN_SUPPORT_SHARE * box.size[0] * box.size[1]:
             support = max(support, min(other.top, box.bottom))
@@ -212,11 +222,11 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
         abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - min(box.size[:2]) / 2 < NEAR_WALL
         for w in structure.walls
     )
-    if not on_wall and gap > 0.3 and box.bottom - floor > MIN_HANGING and structure.ceiling_map is not None:
+    if not on_wall and gap > MAX_WALL_DROP and box.bottom - floor > MIN_HANGING and structure.ceiling_map is not None:
         ceiling = float(structure.ceiling_map.at(np.array([box.centre[:2]]))[0])
         if ceiling - box.top < UNDER_CEILING:
             return replace(_between(box, box.bottom, ceiling), hanging=True)
-    if gap <= 0.02 or gap >= MAX_SUPPORT_GAP or (on_wall and gap > 0.3):
+    if gap <= MIN_GAP or gap >= MAX_SUPPORT_GAP or (on_wall and gap > MAX_WALL_DROP):
         return box
     return _between(box, box.bottom - gap, box.top)
 

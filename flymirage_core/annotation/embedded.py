@@ -46,6 +46,9 @@ VARIATION_RADIUS: Final = 0.09
 STRUCTURE_NEIGHBOURS: Final = 12
 HALF_AN_OBJECT: Final = 0.5
 """Metres that an object may reach beyond its centre: so much farther than the limit its own pixels may lie."""
+RESTING: Final = 0.1
+"""Metres between a thing and what carries it."""
+AT_WALL: Final = 0.15
 DUPLICATE_IOU: Final = 0.5
 FULL_EVIDENCE: Final = 12
 """Supporting views from which more add nothing to the score."""
@@ -178,7 +181,7 @@ def _object_box(
         centre=box.centre,
         size=box.size,
         yaw=box.yaw,
-        score=float(0.5 * label.fit + 0.5 * min(1.0, found.views / FULL_EVIDENCE)),
+        score=float((label.fit + min(1.0, found.views / FULL_EVIDENCE)) / 2),
         label_source="colour and roughness" if plant else "size_prior",
         colour=colour_name(np.median(lab, axis=0)),
         material="",
@@ -196,14 +199,15 @@ def _support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStruc
         return Support.CEILING
     if box.bottom - structure.floor < ON_FLOOR:
         return Support.FLOOR
-    carried = any(other is not box and abs(other.top - box.bottom) < 0.1 and _over(box, other) for other in boxes)
+    carried = any(other is not box and abs(other.top - box.bottom) < RESTING and _over(box, other) for other in boxes)
     near_wall = any(
-        abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - max(box.size[:2]) / 2 < 0.15 for w in structure.walls
+        abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - max(box.size[:2]) / 2 < AT_WALL
+        for w in structure.walls
     )
     return Support.WALL if near_wall and not carried else Support.SURFACE
 
 
 def _over(box: FittedBox, other: FittedBox) -> bool:
     return bool(
-        np.hypot(box.centre[0] - other.centre[0], box.centre[1] - other.centre[1]) < max(other.size[:2]) / 2 + 0.05
+        np.hypot(box.centre[0] - other.centre[0], box.centre[1] - other.centre[1]) < max(other.size[:2]) / 2 + RESTING
     )

@@ -12,31 +12,80 @@ from flymirage_core.annotation.colours import colour_step
 from flymirage_core.annotation.parts import Part, PartSet
 
 MAX_ROUNDS: Final = 12
+BLUR: Final = 0.03
+"""Metres by which fused points err: a voxel."""
+NEAR: Final = 0.05
+"""Metres within which things touch, or lie inside of each other's plan, blur on both sides included."""
+MOST: Final = 0.7
+"""Share of a part's points that counts as most of it."""
+NEARLY_ALL: Final = 0.85
 SUPPORT_AREA: Final = 0.13
 """Square metres from which a level face carries things."""
+SUPPORT_SHARE: Final = 0.7
+"""What stands on a thing is smaller in plan than this share of it; else it is its upper part."""
+MAX_STANDING_DEPTH: Final = 0.5
+"""Metres that a carrier may rise above the foot of what it carries: the back of a desk, not the room round a chair."""
 SAME_COLOUR: Final = 9.0
 """Colour step up to which touching parts are one thing."""
+MIN_CONTACT: Final = 4
+"""Edges between two parts from which they touch ..."""
+MIN_CONTACT_SHARE: Final = 0.02
+"""... and as a share of the smaller part's points."""
 IDENTICAL_COLOUR: Final = 3.0
-"""... even where one stands on the other."""
+"""Colour step up to which even what stands on a thing is a part of it."""
 SIMILAR_COLOUR: Final = 14.0
 """Colour step up to which parts that nearly touch are one thing."""
 JOINT_GAP: Final = 0.10
 """Metres that a joint too thin to be seen may bridge."""
+MIN_JOINT_POINTS: Final = 3
 LARGE: Final = 1.0
 """Metres; two things that are both longer are never bridged."""
 MAX_ABSORBED: Final = 0.34
 """Metres; larger pieces are not swallowed by what is round them: books in a shelf are, a chair under a table is not."""
+STACK_DEPTH: Final = 0.12
+"""Metres that the upper of two stacked parts may reach into the lower."""
+CENTRED: Final = 0.2
+"""Share of the smaller part's width within which two are centred on each other."""
+COVER_SHARE: Final = 0.6
+"""Of the lower part's plan, that a cover has: a mattress on its frame."""
+MIN_COVER_AREA: Final = 0.25
+"""Square metres; smaller overhanging parts are lids, shades and things on things."""
+FOOT_CLEARANCE: Final = 0.25
+SHADE_CLEARANCE: Final = 0.3
 MAX_POLE_GAP: Final = 1.1
-"""Metres between a foot and a shade whose pole was lost."""
-MAX_LEG_POINTS: Final = 400
+"""Metres between a foot on the floor and a shade whose pole was lost."""
 MAX_TABLE_POLE_GAP: Final = 0.25
+"""The same on a table."""
+POLE_SLANT: Final = 0.12
+"""Metres between the middles of foot and shade."""
 MAX_LAMP_SIDE: Final = 0.75
+MIN_CARRIER_AREA: Final = 0.1
+"""Square metres in plan from which a third thing between foot and shade may carry the shade."""
+PANEL_CLEARANCE: Final = 0.18
+PANEL_DEPTH: Final = 0.17
+PANEL_LENGTH: Final = 0.25
+PANEL_OFFSET: Final = 0.13
+"""Metres between a panel and the side that it is attached to."""
+PANEL_RATIOS: Final = (0.72, 1.25)
+"""Length of a panel against that of the side it is attached to."""
 THIN: Final = 0.12
 """Metres of the shorter side in plan of a panel: a screen on its keyboard, the frame of a trolley."""
+MIN_THIN_CONTACT: Final = 8
+THIN_MARGIN: Final = 0.08
 MAX_CONTENT: Final = 0.5
 """Metres; larger things in a shelf are things of their own."""
+MIN_CONTAINER: Final = 3
+"""A container has so many times the points of its content."""
 ENCLOSED: Final = 0.5
 """At the height of its contents a shelf has this share of the points a metre that it has over all; a table has legs."""
+MAX_LEG_POINTS: Final = 400
+MAX_LEG_SIDE: Final = 0.25
+MAX_LEG_HEIGHT: Final = 1.0
+MAX_LEG_CLEARANCE: Final = 0.45
+MAX_BODY_CLEARANCE: Final = 1.3
+"""Metres above the floor; higher things have no legs."""
+GAP_COST: Final = 20.0
+"""Colour step that a metre between a leg and the body above it weighs as much as."""
 
 
 def merge_parts(parts: PartSet) -> None:
@@ -80,37 +129,38 @@ def _stands_on(upper: Part, lower: Part) -> bool:
     bottom = upper.lower[2]
     return bool(
         area > SUPPORT_AREA
-        and bottom > height - 0.07
-        and bottom > lower.upper[2] - 0.5
-        and upper.footprint.area < 0.7 * lower.footprint.area
-        and lower.footprint.share_inside(upper.points, 0.04) > 0.7
+        and bottom > height - 2 * BLUR
+        and bottom > lower.upper[2] - MAX_STANDING_DEPTH
+        and upper.footprint.area < SUPPORT_SHARE * lower.footprint.area
+        and lower.footprint.share_inside(upper.points, NEAR) > MOST
     )
 
 
 def _same_thing(a: Part, b: Part, step: float, contact: int, kept_apart: bool) -> bool:
-    return step < SAME_COLOUR and contact >= max(4, 0.02 * min(len(a), len(b))) and not kept_apart
+    touching = contact >= max(MIN_CONTACT, MIN_CONTACT_SHARE * min(len(a), len(b)))
+    return step < SAME_COLOUR and touching and not kept_apart
 
 
 def _piece_inside(a: Part, b: Part, stands: bool, upper: Part) -> bool:
     """A small part within the box of a larger one: books in a shelf, knobs, patterns."""
     large, small = (a, b) if len(a) >= len(b) else (b, a)
-    if small.extent.max() >= MAX_ABSORBED or (stands and small is upper and small.upper[2] > large.upper[2] - 0.02):
+    if small.extent.max() >= MAX_ABSORBED or (stands and small is upper and small.upper[2] > large.upper[2] - BLUR):
         return False
-    within = small.upper[2] < large.upper[2] + 0.03 and small.lower[2] > large.lower[2] - 0.03
-    return bool(within and large.footprint.share_inside(small.points, 0.02) > 0.8)
+    within = small.upper[2] < large.upper[2] + BLUR and small.lower[2] > large.lower[2] - BLUR
+    return bool(within and large.footprint.share_inside(small.points, BLUR) > NEARLY_ALL)
 
 
 def _stacked(lower: Part, upper: Part) -> bool:
     """One above the other and centred (lamp, plant, television's foot), or covering it (mattress on its frame)."""
-    if upper.lower[2] <= lower.upper[2] - 0.12:
+    if upper.lower[2] <= lower.upper[2] - STACK_DEPTH:
         return False
     a, b = lower.footprint, upper.footprint
-    if np.linalg.norm(a.centre - b.centre) < 0.2 * min(a.size.max(), b.size.max()) + 0.05:
+    if np.linalg.norm(a.centre - b.centre) < CENTRED * min(a.size.max(), b.size.max()) + NEAR:
         return True
-    if b.area > 0.6 * a.area and a.share_inside(upper.points, 0.06) > 0.75:
+    if b.area > COVER_SHARE * a.area and a.share_inside(upper.points, NEAR) > MOST:
         return True
-    overhung = upper.lower[2] < lower.upper[2] + 0.08 and min(a.area, b.area) > 0.25
-    return bool(overhung and b.share_inside(lower.points, 0.05) > 0.85)
+    overhung = upper.lower[2] < lower.upper[2] + JOINT_GAP and min(a.area, b.area) > MIN_COVER_AREA
+    return bool(overhung and b.share_inside(lower.points, NEAR) > NEARLY_ALL)
 
 
 def _join_lost_poles(parts: PartSet) -> None:
@@ -129,13 +179,13 @@ def _foot_and_shade(foot: Part, shade: Part) -> bool:
     gap = float(shade.lower[2] - foot.upper[2])
     max_gap = MAX_TABLE_POLE_GAP if foot.thing else MAX_POLE_GAP
     return bool(
-        (foot.clearance <= 0.25 or foot.thing)
+        (foot.clearance <= FOOT_CLEARANCE or foot.thing)
         and not shade.thing
-        and shade.clearance > 0.3
-        and -0.05 < gap < max_gap
-        and np.linalg.norm(foot.centre[:2] - shade.centre[:2]) <= 0.12
+        and shade.clearance > SHADE_CLEARANCE
+        and -NEAR < gap < max_gap
+        and np.linalg.norm(foot.centre[:2] - shade.centre[:2]) <= POLE_SLANT
         and max(foot.extent[:2].max(), shade.extent[:2].max()) <= MAX_LAMP_SIDE
-        and foot.table[0] < 0.12
+        and foot.table[0] < SUPPORT_AREA
     )
 
 
@@ -143,9 +193,9 @@ def _between(parts: PartSet, i: int, j: int) -> bool:
     """Whether some third part's top lies between the two, under the upper one: then that one carries it."""
     foot, shade = parts.parts[i], parts.parts[j]
     for k, other in parts.parts.items():
-        if k in (i, j) or not foot.upper[2] - 0.12 < other.upper[2] < shade.lower[2] + 0.12:
+        if k in (i, j) or not foot.upper[2] - STACK_DEPTH < other.upper[2] < shade.lower[2] + STACK_DEPTH:
             continue
-        if other.footprint.area > 0.1 and other.footprint.share_inside(foot.points, 0.04) > 0.5:
+        if other.footprint.area > MIN_CARRIER_AREA and other.footprint.share_inside(foot.points, NEAR) > MOST:
             return True
     return False
 
@@ -171,11 +221,11 @@ def _nearly_touching(a: Part, b: Part) -> bool:
         return False
     lower, upper = (a, b) if a.centre[2] < b.centre[2] else (b, a)
     area, height = lower.table
-    carried = area > SUPPORT_AREA and upper.lower[2] > height - 0.05 and lower.upper[2] - upper.lower[2] < 0.1
-    if carried and upper.footprint.area < 0.5 * lower.footprint.area:
+    carried = area > SUPPORT_AREA and upper.lower[2] > height - NEAR and lower.upper[2] - upper.lower[2] < JOINT_GAP
+    if carried and upper.footprint.area < SUPPORT_SHARE * lower.footprint.area:
         return False
     near = cKDTree(a.points).query(b.points, distance_upper_bound=JOINT_GAP)[0]
-    return bool(np.isfinite(near).sum() >= 3)
+    return bool(np.isfinite(near).sum() >= MIN_JOINT_POINTS)
 
 
 def _join_panels(parts: PartSet) -> None:
@@ -183,7 +233,7 @@ def _join_panels(parts: PartSet) -> None:
     for j in sorted(parts.parts, key=lambda k: (len(parts.parts[k]), k)):
         panel = parts.parts[j]
         sides = panel.footprint.size
-        if panel.clearance < 0.18 or sides.min() > 0.17 or sides.max() < 0.25:
+        if panel.clearance < PANEL_CLEARANCE or sides.min() > PANEL_DEPTH or sides.max() < PANEL_LENGTH:
             continue
         for i in sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k)):
             if i != j and _attached(panel, parts.parts[i]):
@@ -194,7 +244,7 @@ def _join_panels(parts: PartSet) -> None:
 def _attached(panel: Part, body: Part) -> bool:
     if (
         panel.thing != body.thing
-        or not body.lower[2] - 0.05 < panel.lower[2] < body.upper[2] + 0.12
+        or not body.lower[2] - NEAR < panel.lower[2] < body.upper[2] + PANEL_OFFSET
         or panel.upper[2] < body.upper[2]
     ):
         return False
@@ -203,8 +253,8 @@ def _attached(panel: Part, body: Part) -> bool:
     length = panel.footprint.size.max()
     for axis in (0, 1):
         side = plan.size[1 - axis]
-        at_side = abs(away[axis] - plan.size[axis] / 2) < 0.13 and away[1 - axis] < 0.2 * side
-        if at_side and 0.72 < length / side < 1.25:
+        at_side = abs(away[axis] - plan.size[axis] / 2) < PANEL_OFFSET and away[1 - axis] < CENTRED * side
+        if at_side and PANEL_RATIOS[0] < length / side < PANEL_RATIOS[1]:
             return True
     return False
 
@@ -212,11 +262,11 @@ def _attached(panel: Part, body: Part) -> bool:
 def _join_thin_pieces(parts: PartSet) -> None:
     """Thin pieces that touch a body and lie over its plan, however high they rise."""
     for i, j, contact in parts.contacts():
-        if i not in parts.parts or j not in parts.parts or contact < 8:
+        if i not in parts.parts or j not in parts.parts or contact < MIN_THIN_CONTACT:
             continue
         large, small = sorted((parts.parts[i], parts.parts[j]), key=len, reverse=True)
         thin = small.footprint.size.min() < THIN and large.thing == small.thing
-        if thin and large.footprint.share_inside(small.points, 0.08) > 0.8:
+        if thin and large.footprint.share_inside(small.points, THIN_MARGIN) > MOST:
             parts.join(i, j)
 
 
@@ -233,25 +283,26 @@ def _join_contents(parts: PartSet) -> None:
 
 
 def _encloses(body: Part, piece: Part) -> bool:
-    if body.thing != piece.thing or len(body) < 3 * len(piece):
+    if body.thing != piece.thing or len(body) < MIN_CONTAINER * len(piece):
         return False
-    if piece.lower[2] < body.lower[2] - 0.03 or piece.upper[2] > body.upper[2] + 0.03:
+    if piece.lower[2] < body.lower[2] - BLUR or piece.upper[2] > body.upper[2] + BLUR:
         return False
-    if body.footprint.share_inside(piece.points, 0.03) < 0.9:
+    if body.footprint.share_inside(piece.points, BLUR) < NEARLY_ALL:
         return False
     heights = body.points[:, 2]
     beside = ((heights > piece.lower[2]) & (heights < piece.upper[2])).mean()
-    return bool(beside > ENCLOSED * piece.extent[2] / max(float(body.extent[2]), 0.05))
+    return bool(beside > ENCLOSED * piece.extent[2] / max(float(body.extent[2]), NEAR))
 
 
 def _join_legs(parts: PartSet) -> None:
     """Thin low pieces under or inside the plan of a larger thing."""
     for j in sorted(parts.parts, key=lambda k: (len(parts.parts[k]), k)):
         leg = parts.parts[j]
-        if len(leg) > MAX_LEG_POINTS or leg.extent[:2].max() > 0.25 or leg.extent[2] > 1.0 or leg.clearance >= 0.45:
+        thick = len(leg) > MAX_LEG_POINTS or leg.extent[:2].max() > MAX_LEG_SIDE
+        if thick or leg.extent[2] > MAX_LEG_HEIGHT or leg.clearance >= MAX_LEG_CLEARANCE:
             continue
         owners = [
-            (float(colour_step(leg.colour, body.colour)) + 20 * max(0.0, float(body.lower[2] - leg.upper[2])), i)
+            (float(colour_step(leg.colour, body.colour)) + GAP_COST * max(0.0, float(body.lower[2] - leg.upper[2])), i)
             for i, body in parts.parts.items()
             if i != j and _over(body, leg)
         ]
@@ -260,6 +311,6 @@ def _join_legs(parts: PartSet) -> None:
 
 
 def _over(body: Part, leg: Part) -> bool:
-    high_enough = body.upper[2] > leg.upper[2] - 0.03 and body.clearance <= 1.3
+    high_enough = body.upper[2] > leg.upper[2] - BLUR and body.clearance <= MAX_BODY_CLEARANCE
     alike = body.thing == leg.thing and len(body) >= 2 * len(leg)
-    return bool(alike and high_enough and body.footprint.share_inside(leg.points, 0.06) > 0.6)
+    return bool(alike and high_enough and body.footprint.share_inside(leg.points, NEAR) > COVER_SHARE)

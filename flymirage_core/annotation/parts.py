@@ -13,6 +13,9 @@ from flymirage_core.annotation.supports import LEVEL
 Float32 = NDArray[np.float32]
 Index = NDArray[np.intp]
 
+TABLE_BIN = 0.04
+"""Metres; heights within two bins are one level face."""
+
 
 @dataclass(frozen=True, eq=False)
 class Surface:
@@ -84,10 +87,12 @@ class Part:
         if len(up) < 6:
             return 0.0, float("-inf")
         heights = self.surface.points[up, 2]
-        counts, edges = np.histogram(heights, np.arange(heights.min() - 0.02, heights.max() + 0.06, 0.04))
+        counts, edges = np.histogram(
+            heights, np.arange(heights.min() - TABLE_BIN, heights.max() + 2 * TABLE_BIN, TABLE_BIN)
+        )
         pairs = counts + np.append(counts[1:], 0)
         k = int(pairs.argmax())
-        return float(pairs[k]) * self.surface.voxel**2, float(edges[k]) + 0.04
+        return float(pairs[k]) * self.surface.voxel**2, float(edges[k]) + TABLE_BIN
 
 
 class PartSet:

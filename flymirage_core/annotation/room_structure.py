@@ -55,6 +55,20 @@ FLOOR_RELIEF: Final = 0.14
 CEILING_RELIEF: Final = 0.7
 MAX_YAW_SAMPLES: Final = 20_000
 WALL_BIN: Final = 0.03
+PEAK_WINDOW: Final = 9
+"""Bins, of which a wall's is the fullest."""
+MIN_PEAK_AREA: Final = 0.8
+"""Square metres in three bins."""
+ON_PLANE: Final = 0.05
+"""Metres within which points belong to a plane that is being measured."""
+MIN_OUTER_HEIGHT: Final = 1.2
+"""Metres of height that the outermost plane shows at least."""
+WALL_END: Final = 0.1
+"""Metres that a wall's slab goes on beyond the points seen of it."""
+MAX_TURN: Final = 0.06
+"""Radians; walls that would turn the yaw by more are not straight."""
+SHARPNESS_BIN: Final = 0.04
+MIN_LEVEL_POINTS: Final = 50
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +96,7 @@ class Wall:
         along = points[:, :2] @ self.direction
         distance = self.distance(points)
         near = (distance < WALL_CLEARANCE) & (distance > -WALL_THICKNESS)
-        return np.asarray(near & (along > self.start - 0.1) & (along < self.end + 0.1))
+        return np.asarray(near & (along > self.start - WALL_END) & (along < self.end + WALL_END))
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +140,11 @@ class RoomStructure:
         skin = np.zeros(len(points), bool)
         for wall in self.walls:
             along = points[:, :2] @ wall.direction
-            near = (np.abs(wall.distance(points)) < WALL_SKIN) & (along > wall.start - 0.1) & (along < wall.end + 0.1)
+            near = (
+                (np.abs(wall.distance(points)) < WALL_SKIN)
+                & (along > wall.start - WALL_END)
+                & (along < wall.end + WALL_END)
+            )
             skin |= near & (normals[:, :2] @ wall.normal > ALONG_WALL)
         return skin
 
@@ -186,21 +204,21 @@ def _sharpness(xy: Float64, facing: Float64, yaw: float) -> float:
         axis = np.array([np.cos(angle), np.sin(angle)])
         offsets = xy[np.abs(facing @ axis) > ALONG_WALL] @ axis
         if len(offsets):
-            counts = np.bincount(((offsets - offsets.min()) / 0.04).astype(int))
+            counts = np.bincount(((offsets - offsets.min()) / SHARPNESS_BIN).astype(int))
             total += float((counts.astype(np.float64) ** 2).sum())
     return total
 
 
 def _floor(points: Float32, normals: Float32) -> float:
     level = points[normals[:, 2] > HORIZONTAL, 2]
-    if len(level) < 50:
+    if len(level) < MIN_LEVEL_POINTS:
         return float(points[:, 2].min())
     return _first_peak(level, FLOOR_PEAK)
 
 
 def _ceiling(points: Float32, normals: Float32, floor: float) -> float | None:
     level = points[normals[:, 2] < -HORIZONTAL, 2]
-    if len(level) < 200:
+    if len(level) < 4 * MIN_LEVEL_POINTS:
         return None
     ceiling = -_first_peak(-level, CEILING_PEAK)
     return ceiling if ceiling - floor > MIN_ROOM_HEIGHT else None
@@ -209,7 +227,7 @@ def _ceiling(points: Float32, normals: Float32, floor: float) -> float | None:
 def _first_peak(heights: Float32, share: float) -> float:
     """The lowest local maximum of the heights' histogram that starts where it passes ``share`` of its maximum."""
     counts, edges = np.histogram(
-        heights, np.arange(heights.min() - 0.05, heights.max() + 0.05 + HEIGHT_STEP, HEIGHT_STEP)
+        heights, np.arange(heights.min() - 2 * HEIGHT_STEP, heights.max() + 3 * HEIGHT_STEP, HEIGHT_STEP)
     )
     i = int(np.flatnonzero(counts > share * counts.max())[0])
     while i + 1 < len(counts) and counts[i + 1] > counts[i]:
@@ -224,21 +242,25 @@ def _walls_facing(
     normal = np.array([np.cos(azimuth), np.sin(azimuth)])
     direction = np.array([-normal[1], normal[0]])
     facing = upright & (normals[:, :2] @ normal > ALONG_WALL)
-    if facing.sum() < 100:
+    if facing.sum() < 2 * MIN_LEVEL_POINTS:
         return []
     offsets, along, heights = points[facing, :2] @ normal, points[facing, :2] @ direction, points[facing, 2]
     all_offsets = points[:, :2] @ normal
-    counts, edges = np.histogram(offsets, np.arange(offsets.min() - 0.06, offsets.max() + 0.06 + WALL_BIN, WALL_BIN))
+    counts, edges = np.histogram(
+        offsets, np.arange(offsets.min() - 2 * WALL_BIN, offsets.max() + 3 * WALL_BIN, WALL_BIN)
+    )
     smoothed = np.convolve(counts, [1, 1, 1], "same")
-    peaks = (smoothed >= ndimage.maximum_filter1d(smoothed, 9)) & (smoothed * voxel**2 > 0.8)
+    peaks = (smoothed >= ndimage.maximum_filter1d(smoothed, PEAK_WINDOW)) & (smoothed * voxel**2 > MIN_PEAK_AREA)
     walls = []
     for j in np.flatnonzero(peaks):
         offset = (edges[j] + edges[j + 1]) / 2
-        on = np.abs(offsets - offset) < 0.05
+        on = np.abs(offsets - offset) < ON_PLANE
         offset = float(np.median(offsets[on]))
         cells = np.unique(np.floor(np.stack([along[on], heights[on]], axis=1) / MAP_CELL), axis=0)  # (C, 2)
         reaching = np.unique(cells[cells[:, 1] * MAP_CELL > top - CEILING_REACH, 0])
-        outermost = (all_offsets < offset - WALL_THICKNESS).mean() < MAX_BEHIND and np.ptp(heights[on]) > 1.2
+        outermost = (all_offsets < offset - WALL_THICKNESS).mean() < MAX_BEHIND and np.ptp(
+            heights[on]
+        ) > MIN_OUTER_HEIGHT
         if len(cells) * MAP_CELL**2 > MIN_WALL_AREA and (len(reaching) * MAP_CELL > MIN_WALL_TOP or outermost):
             walls.append(Wall(normal, offset, float(along[on].min()), float(along[on].max()), offset))
     return walls
@@ -250,8 +272,10 @@ def _aligned(
     """The yaw refined by straight lines through the walls' own points, and the walls turned accordingly."""
     turns, weights = [], []
     for wall in walls:
-        on = points[upright & (np.abs(wall.distance(points)) < 0.06) & (normals[:, :2] @ wall.normal > 0.9), :2]
-        if len(on) < 50:
+        on = points[
+            upright & (np.abs(wall.distance(points)) < ON_PLANE) & (normals[:, :2] @ wall.normal > ALONG_WALL), :2
+        ]
+        if len(on) < MIN_SQUARE_POINTS:
             continue
         centred = (on - on.mean(axis=0)).astype(np.float64)
         values, vectors = np.linalg.eigh(centred.T @ centred)
@@ -259,13 +283,17 @@ def _aligned(
         turns.append((run + np.pi / 4) % (np.pi / 2) - np.pi / 4)
         weights.append(values[1])
     turn = float(np.average(turns, weights=weights)) if turns else 0.0
-    if abs(turn) > 0.06 or turn == 0.0:
+    if abs(turn) > MAX_TURN or turn == 0.0:
         return yaw, walls
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     turned = []
     for wall in walls:
         normal = rotation @ wall.normal
-        facing = upright & (np.abs(points[:, :2] @ normal - wall.offset) < 0.08) & (normals[:, :2] @ normal > 0.9)
+        facing = (
+            upright
+            & (np.abs(points[:, :2] @ normal - wall.offset) < 2 * ON_PLANE)
+            & (normals[:, :2] @ normal > ALONG_WALL)
+        )
         offset = float(np.median(points[facing, :2] @ normal)) if facing.any() else wall.offset
         turned.append(Wall(normal, offset, wall.start, wall.end, offset))
     return yaw + turn, turned

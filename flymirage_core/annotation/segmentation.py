@@ -23,6 +23,9 @@ OVERSIZE: Final = 2.7
 STRICTER: Final = (0.6, 0.38, 0.25)
 """... with these shares of `MAX_STEP`, in turn."""
 MIN_OVERSIZE_POINTS: Final = 400
+ABSORB_SCALE: Final = 14.0
+"""Colour step over which a small part stops resembling its neighbour."""
+LEAST_SIMILARITY: Final = 1e-3
 MIN_PART_POINTS: Final = 12
 """Smaller parts go to the neighbour of the most similar colour."""
 
@@ -105,7 +108,7 @@ def _small_absorbed(surface: Surface, labels: Index) -> Index:
     border = a != b
     a, b, steps = a[border], b[border], surface.steps[border]
     sources, targets = np.concatenate([a, b]), np.concatenate([b, a])
-    similarity = np.tile(np.exp(-((steps / 14) ** 2)) + 1e-3, 2)
+    similarity = np.tile(np.exp(-((steps / ABSORB_SCALE) ** 2)) + LEAST_SIMILARITY, 2)
     small = counts[sources] < MIN_PART_POINTS
     if not small.any():
         return labels

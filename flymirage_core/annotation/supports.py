@@ -25,6 +25,11 @@ FACE_THICKNESS: Final = 0.03
 FACE_GAP: Final = 0.02
 """Metres above a face's points where things on it begin."""
 CELL: Final = 0.03
+HEIGHT_BIN: Final = 0.01
+FACE_TRIM: Final = 1.0
+"""Per cent of a face's points beyond each side of its rectangle."""
+SURROUNDINGS: Final = 0.5
+"""Metres round a face in which things on it are followed, so that what only leans over it is seen to be larger."""
 BASE_HEIGHT: Final = 0.10
 """Metres above the face within which a thing on it must begin, and where its base is judged."""
 MAX_THING_HEIGHT: Final = 1.3
@@ -74,13 +79,13 @@ def level_faces(points: Float32, normals: Float32, edges: Index, floor: float, y
     for k in np.flatnonzero(np.bincount(labels[up], minlength=1) * CELL**2 >= MIN_FACE_AREA):
         members = np.flatnonzero(up & (labels == k))
         heights = points[members, 2]
-        counts, bins = np.histogram(heights, np.arange(heights.min(), heights.max() + 2 * CELL, 0.01))
-        main = bins[int(np.convolve(counts, [1, 1, 1], "same").argmax())] + 0.005
+        counts, bins = np.histogram(heights, np.arange(heights.min(), heights.max() + 2 * CELL, HEIGHT_BIN))
+        main = bins[int(np.convolve(counts, [1, 1, 1], "same").argmax())] + HEIGHT_BIN / 2
         flat = members[np.abs(heights - main) < FACE_THICKNESS]
         cells = np.unique(np.floor(points[flat, :2] / CELL), axis=0)
         if len(cells) * CELL**2 >= MIN_FACE_AREA:
             top = float(np.percentile(points[flat, 2], 80))
-            faces.append(Face(top, fit_footprint(points[flat], yaw, trim=1.0)))
+            faces.append(Face(top, fit_footprint(points[flat], yaw, FACE_TRIM)))
     return sorted(faces, key=lambda f: (f.height, tuple(f.plan.centre)))
 
 
@@ -101,7 +106,7 @@ def _on_face(face: Face, points: Float32, edges: Index) -> list[Index]:
     """Point indices of each thing that stands on a face."""
     bottom = face.height + FACE_GAP
     local = face.plan.local(points)  # (N, 2)
-    near = (np.abs(local) < face.plan.size / 2 + 0.5).all(axis=1)
+    near = (np.abs(local) < face.plan.size / 2 + SURROUNDINGS).all(axis=1)
     above = near & (points[:, 2] > bottom) & (points[:, 2] < bottom + MAX_THING_HEIGHT)
     index = np.flatnonzero(above)
     if len(index) < MIN_THING_POINTS:
