@@ -20,7 +20,7 @@ from flymirage_core.annotation.labels import Support, is_plant, name_box, name_p
 from flymirage_core.annotation.merging import merge_parts
 from flymirage_core.annotation.normals import surface_normals, surface_variation
 from flymirage_core.annotation.parts import PartSet, Surface
-from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing
+from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.segmentation import (
     colour_parts,
@@ -115,7 +115,8 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     boxes = settle(_fitted(parts, objects, cloud, structure), structure)
     boxes = [box for box in boxes if is_thing(box, structure)]
     boxes += wall_objects(cloud.points, shading_free(to_lab(cloud.colours)), structure)
-    return sorted(_without_duplicates(boxes), key=lambda b: (round(b.bottom, 2), b.centre))
+    boxes = without_contents(_without_duplicates(boxes), cloud.points)
+    return sorted(boxes, key=lambda b: (round(b.bottom, 2), b.centre))
 
 
 def _solid_cloud(cloud: FusedPoints, structure: RoomStructure, frames: Sequence[Frame]) -> FusedPoints:

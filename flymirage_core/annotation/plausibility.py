@@ -1,9 +1,17 @@
 """Which boxes are things and which are left-overs of the building: trim, ledges, panels, frames, slivers."""
 
+from collections.abc import Sequence
 from typing import Final
 
+import numpy as np
+from numpy.typing import NDArray
+
 from flymirage_core.annotation.box_fitting import FittedBox
+from flymirage_core.annotation.fusion import footprint_overlap
+from flymirage_core.annotation.merging import ENCLOSED
 from flymirage_core.annotation.room_structure import RoomStructure
+
+Float32 = NDArray[np.float32]
 
 MIN_OBJECT_POINTS: Final = 25
 LONGEST: Final = 4.5
@@ -36,6 +44,11 @@ MIN_STICK_POINTS: Final = 150
 SPECK_VOLUME: Final = 0.004
 """Cubic metres of which little evidence is no evidence."""
 
+MIN_VOLUME_RATIO: Final = 4.0
+"""Volume of a bookcase against that of one of its contents."""
+HELD_SHARE: Final = 0.8
+"""Of the content's plan, that lies inside of the bookcase's."""
+
 
 def is_thing(box: FittedBox, structure: RoomStructure) -> bool:
     """Whether a box made from parts is an object, rather than a left-over."""
@@ -44,6 +57,24 @@ def is_thing(box: FittedBox, structure: RoomStructure) -> bool:
     clearance = box.bottom - structure.floor
     building = _is_trim(box, clearance, structure) or _is_ledge(box, structure) or _is_panel(box, structure)
     return not (building or _is_sliver(box, clearance))
+
+
+def without_contents(boxes: Sequence[FittedBox], points: Float32) -> list[FittedBox]:
+    """The boxes but for those inside of another that encloses them: books, boards and backs of a bookcase.
+
+    ``points``: (N, 3) that the boxes' members number. What stands under a table stays: a table has only legs beside it.
+    """
+    return [box for box in boxes if not any(_holds(other, box, points) for other in boxes)]
+
+
+def _holds(body: FittedBox, box: FittedBox, points: Float32) -> bool:
+    if body.volume < MIN_VOLUME_RATIO * box.volume or box.bottom < body.bottom or box.top > body.top:
+        return False
+    if footprint_overlap(body, box) < HELD_SHARE * box.size[0] * box.size[1]:
+        return False
+    heights = points[body.members, 2]
+    beside = ((heights > box.bottom) & (heights < box.top)).mean()
+    return bool(beside > ENCLOSED * box.size[2] / body.size[2])
 
 
 def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool:
