@@ -204,6 +204,9 @@ def report(scene: Scene, passes: Passes, settings: Settings) -> None:
         ("1", passes.first, passes.orbit_views, passes.seconds[0]),
         ("1+2", passes.second, passes.all_views, passes.seconds[1]),
     ):
+        if not scene.truth:
+            print(f"{scene.name:<16}{name:<6}{len(views):>6}{len(boxes):>6}{'no truth':>47}{seconds:>7.1f}", flush=True)
+            continue
         loose, strict = (score(boxes, scene.truth, counted, iou, scene.openings) for iou in (0.25, 0.5))
         print(
             f"{scene.name:<16}{name:<6}{len(views):>6}{len(boxes):>6}{sum(counted):>6}{loose.recall:>7.2f}"
