@@ -35,6 +35,8 @@ MIN_WALL_TOP: Final = 0.9
 """Metres of length along which it reaches the ceiling."""
 CEILING_REACH: Final = 0.45
 """Metres below the ceiling that count as reaching it."""
+ABOVE_FURNITURE: Final = 2.3
+"""Metres above the floor to which only walls reach, in rooms that are higher."""
 MAX_BEHIND: Final = 0.004
 """Share of all points that may lie behind the outermost wall."""
 WALL_THICKNESS: Final = 0.12
@@ -170,7 +172,8 @@ def find_structure(points: Float32, normals: Float32, square: Float32, voxel: fl
     upright = np.abs(normals[:, 2]) < VERTICAL
     upright &= (normals != 0).any(axis=1)
     yaw = room_yaw(points[upright], normals[upright])
-    top = ceiling if ceiling is not None else floor + DEFAULT_ROOM_HEIGHT
+    ceiling_reach = ceiling - CEILING_REACH if ceiling is not None else floor + DEFAULT_ROOM_HEIGHT - CEILING_REACH
+    top = min(ceiling_reach, floor + ABOVE_FURNITURE)
     walls = [w for k in range(4) for w in _walls_facing(points, normals, upright, yaw + k * np.pi / 2, top, voxel)]
     yaw, walls = _aligned(points, normals, upright, yaw, walls)
     walls = [_with_back(wall, square) for wall in walls]
@@ -238,7 +241,7 @@ def _first_peak(heights: Float32, share: float) -> float:
 def _walls_facing(
     points: Float32, normals: Float32, upright: Bool, azimuth: float, top: float, voxel: float
 ) -> list[Wall]:
-    """Walls whose normal has this azimuth: planes of enough area that reach the top, or that nothing is behind."""
+    """Walls whose normal has this azimuth: planes of enough area that reach above ``top``, or with nothing behind."""
     normal = np.array([np.cos(azimuth), np.sin(azimuth)])
     direction = np.array([-normal[1], normal[0]])
     facing = upright & (normals[:, :2] @ normal > ALONG_WALL)
@@ -257,7 +260,7 @@ def _walls_facing(
         on = np.abs(offsets - offset) < ON_PLANE
         offset = float(np.median(offsets[on]))
         cells = np.unique(np.floor(np.stack([along[on], heights[on]], axis=1) / MAP_CELL), axis=0)  # (C, 2)
-        reaching = np.unique(cells[cells[:, 1] * MAP_CELL > top - CEILING_REACH, 0])
+        reaching = np.unique(cells[cells[:, 1] * MAP_CELL > top, 0])
         outermost = (all_offsets < offset - WALL_THICKNESS).mean() < MAX_BEHIND and np.ptp(
             heights[on]
         ) > MIN_OUTER_HEIGHT
