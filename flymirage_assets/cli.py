@@ -84,7 +84,7 @@ def import_(
     world: Annotated[Path, typer.Argument(help="a Gaussian-splat world: .spz or .ply")],
     scene: Annotated[str, typer.Option(help="the scene's key: lower-case letters, digits, '-' and '_'")],
     up: Annotated[Up, typer.Option(help="the file's up axis: auto, y, z or -y")] = "auto",
-    scale: Annotated[float | None, typer.Option(help="metres per file unit; estimated if not given")] = None,
+    scale: Annotated[float | None, typer.Option(help="metres per file unit; 1 if not given")] = None,
     title: Annotated[str, typer.Option(help="what people call the place")] = "",
     register_only: Annotated[bool, typer.Option("--register-only", help="do not make its products now")] = False,
 ) -> None:
@@ -173,7 +173,7 @@ def lerobot(
 def doctor(
     world: Annotated[Path, typer.Argument(help="a Gaussian-splat world: .spz or .ply")],
     up: Annotated[Up, typer.Option(help="the file's up axis: auto, y, z or -y")] = "auto",
-    scale: Annotated[float | None, typer.Option(help="metres per file unit; estimated if not given")] = None,
+    scale: Annotated[float | None, typer.Option(help="metres per file unit; 1 if not given")] = None,
 ) -> None:
     """Say whether a world can be flown in, what is wrong with it, and what to do."""
     from flymirage_assets.report import doctor_table

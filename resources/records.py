@@ -28,7 +28,7 @@ class SceneOrigin(Document):
     file_name: str = ""  # imported
     file_sha256: str = ""
     up: Up = "auto"
-    scale: float | None = None  # metres per file unit; None = estimate
+    scale: float | None = None  # metres per file unit; None = the file is in metres
 
     @field_validator("scene")
     @classmethod

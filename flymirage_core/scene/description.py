@@ -16,7 +16,7 @@ class Provenance(BaseModel):
     file_name: str = ""  # imported: the world file's name
     file_sha256: str = ""  # imported
     up: str = ""  # imported: "auto" | "y" | "z" | "-y"
-    scale: float = 0.0  # imported: metres per file unit; 0 = estimate
+    scale: float = 0.0  # imported: metres per file unit; 0 = the file is in metres
 
 
 class PlannedObject(BaseModel):
