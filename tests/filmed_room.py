@@ -206,7 +206,7 @@ def scene_products(
     settings = VerdictSettings(min_sharpness=1.0)
     verdicts = MeasuredJudge(settings).judge(filmed, trajectories, boxes)
     tasks = tuple(Task(f.set_index, 0, f.object_id, tuple(f.positions[0]), tuple(f.target_point)) for f in flights)
-    prompts = OfflinePrompter().write(scene, boxes, trajectories, verdicts)
+    prompts = OfflinePrompter().write(scene, filmed, boxes, trajectories, verdicts)
     return SceneProducts(
         scene,
         description(scene),

@@ -72,6 +72,6 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         stage: Stage, frames: Frames, boxes: BoxMap, trajectories: Trajectories, quality_verdict: QualityVerdicts
     ) -> Prompts:
         """Up to three instructions for each kept flight: object-centred, relative, appearance; none ambiguous."""
-        return stage.tools.prompter.write(stage.scene, boxes, trajectories, quality_verdict)
+        return stage.tools.prompter.write(stage.scene, frames, boxes, trajectories, quality_verdict)
 
     return [task_sets, trajectories, frames, quality_verdict, prompts]

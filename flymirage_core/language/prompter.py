@@ -30,6 +30,7 @@ from flymirage_core.language.scene_relations import Relation, Side, StartPose, T
 from flymirage_core.language.verdicts import QualityVerdicts
 from flymirage_core.language.wording import Landmarks, sentence
 from flymirage_core.navigation.trajectories import Flight, Trajectories
+from flymirage_core.rendering.frames import Frames
 from flymirage_core.scene.keys import rng
 
 NEAREST_LANDMARKS = 8
@@ -48,7 +49,9 @@ class Prompter(Protocol):
     @property
     def name(self) -> str: ...
 
-    def write(self, scene: str, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts) -> Prompts: ...
+    def write(
+        self, scene: str, frames: Frames, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts
+    ) -> Prompts: ...
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,9 @@ class OfflinePrompter:
 
     name: str = "offline 1"
 
-    def write(self, scene: str, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts) -> Prompts:
+    def write(
+        self, scene: str, frames: Frames, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts
+    ) -> Prompts:
         """Prompts in the order of flights, then kinds; a kept flight of which nothing sure can be said has none."""
         kept = set(verdicts.kept)
         written: list[Prompt] = []

@@ -1,10 +1,12 @@
 """Prompts: what is said of a target, and what is refused because it could mean something else."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
-from filmed_room import box, flight_to, furnished_room
+from filmed_room import RIG, box, flight_to, furnished_room
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -29,8 +31,10 @@ from flymirage_core.language.scene_relations import Relation, Side, StartPose, T
 from flymirage_core.language.verdicts import QualityVerdicts, Verdict
 from flymirage_core.language.wording import Landmarks, definite, indefinite
 from flymirage_core.navigation.trajectories import Trajectories
+from flymirage_core.rendering.frames import Frames
 
 EAST = StartPose((0.0, 0.0, 1.2), 0.0)  # looks along +x, so +y is on the left
+UNSEEN = Frames(Path("nowhere"), RIG, pd.DataFrame({"flight_id": []}))  # the offline prompter looks at boxes only
 
 
 def chair(object_id: int, x: float, y: float, colour: str = "red") -> ObjectBox:
@@ -44,7 +48,7 @@ def kinds(*boxes: ObjectBox, target: int = 0, start: StartPose = EAST) -> dict[s
 def written(boxes: BoxMap, target: int, keep: bool = True) -> list[Prompt]:
     flight = flight_to(boxes.by_id(target), 0)
     verdicts = QualityVerdicts((Verdict(0, keep, (), "test"),))
-    return list(OfflinePrompter().write("cafe", boxes, Trajectories((flight,)), verdicts))
+    return list(OfflinePrompter().write("cafe", UNSEEN, boxes, Trajectories((flight,)), verdicts))
 
 
 class TestReadingBack:
@@ -250,7 +254,7 @@ class TestWording:
         boxes = furnished_room()
         flights = tuple(flight_to(boxes.by_id(4), i) for i in range(60))
         verdicts = QualityVerdicts(tuple(Verdict(i, True, (), "test") for i in range(60)))
-        prompts = OfflinePrompter().write("cafe", boxes, Trajectories(flights), verdicts)
+        prompts = OfflinePrompter().write("cafe", UNSEEN, boxes, Trajectories(flights), verdicts)
         plain = [p.text for p in prompts if p.kind == "object_centred"]
         assert len(plain) == 60
         assert max(plain.count(text) for text in set(plain)) <= 9
