@@ -1,0 +1,3 @@
+from flymirage_assets.cli import main
+
+main()
