@@ -1,11 +1,11 @@
 """`World`, the product of the `world` asset: a cleaned splat cloud in the metric z-up frame, and its centre c."""
 
 import json
-import shutil
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Final
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,6 +14,8 @@ from flymirage_core.splats.cloud import GaussianCloud
 from flymirage_core.splats.files import read_cloud, write_ply
 
 SCHEMA: Final = 1
+PANORAMA_QUALITY: Final = 92
+"""Of the panorama's JPEG: it is looked at, never measured."""
 
 
 @dataclass(frozen=True)
@@ -26,17 +28,28 @@ class World:
     cloud: GaussianCloud
     centre: NDArray[np.float64]  # (3,) the paper's c: Marble's panorama origin, in free space
     notes: dict[str, Any] = field(default_factory=dict)
-    collider: Path | None = None  # GLB in the same frame, if the source has one
+    collider: bytes | None = None  # a GLB of this frame, metres; `splats.collider` turns its y up to z up
+    panorama: NDArray[np.uint8] | None = None  # (H, 2H, 3) all round c: its middle column looks along +y, left is -x
 
     def summary(self) -> dict[str, str | int | float]:
         return {"gaussians": len(self.cloud), "sh_degree": self.cloud.sh_degree, **self.notes}
 
     def save(self, folder: Path) -> None:
-        """``world.ply`` (3DGS, as SuperSplat and gsplat read it), ``world.json``, ``collider.glb`` if there is one."""
+        """``world.ply`` (3DGS, as SuperSplat and gsplat read it), ``world.json``.
+
+        Where there are such, ``collider.glb`` and ``panorama.jpg`` (lossy: loading gives nearly the same picture).
+
+        Raises:
+            ProductError: the panorama cannot be written.
+        """
         folder.mkdir(parents=True, exist_ok=True)
         write_ply(self.cloud, folder / "world.ply")
         if self.collider is not None:
-            shutil.copyfile(self.collider, folder / "collider.glb")
+            (folder / "collider.glb").write_bytes(self.collider)
+        if self.panorama is not None:
+            path = folder / "panorama.jpg"
+            if not cv2.imwrite(str(path), self.panorama[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, PANORAMA_QUALITY]):
+                raise ProductError(f"{path} could not be written; is the disk full?")
         document = {"schema": SCHEMA, "centre": [float(x) for x in self.centre], "notes": self.notes}
         (folder / "world.json").write_text(json.dumps(document, indent=2, sort_keys=True) + "\n", encoding="utf-8")
 
@@ -58,4 +71,14 @@ class World:
         except WorldError as error:
             raise ProductError(f"{error}; make the world again") from error
         collider = folder / "collider.glb"
-        return World(cloud, centre, notes, collider if collider.exists() else None)
+        return World(cloud, centre, notes, collider.read_bytes() if collider.exists() else None, _panorama(folder))
+
+
+def _panorama(folder: Path) -> NDArray[np.uint8] | None:
+    path = folder / "panorama.jpg"
+    if not path.exists():
+        return None
+    image = cv2.imread(str(path), cv2.IMREAD_COLOR)
+    if image is None:
+        raise ProductError(f"{path} is torn; make the world again")
+    return np.ascontiguousarray(image[:, :, ::-1], np.uint8)

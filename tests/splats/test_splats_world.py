@@ -1,12 +1,15 @@
+import io
 import json
 
 import numpy as np
 import pytest
+import trimesh
 from splat_worlds import box, random_cloud
 
 from flymirage_core.errors import ProductError, WorldError
 from flymirage_core.settings import CleaningSettings
 from flymirage_core.splats.cleaning import clean
+from flymirage_core.splats.collider import from_glb, to_glb
 from flymirage_core.splats.files import write_ply
 from flymirage_core.splats.frames import MarbleSemantics
 from flymirage_core.splats.imports import import_marble_world, import_world
@@ -50,9 +53,34 @@ def test_saving_twice_gives_the_same_bytes(tmp_path):
 
 
 def test_the_collider_travels_with_the_world(tmp_path):
-    (tmp_path / "mesh.glb").write_bytes(b"glTF")
-    World(random_cloud(np.random.default_rng(2), 4), np.zeros(3), collider=tmp_path / "mesh.glb").save(tmp_path / "w")
-    assert World.load(tmp_path / "w").collider.read_bytes() == b"glTF"
+    glb = to_glb([[0, 0, 0], [1, 0, 0], [0, 0, 2]], [[0, 1, 2]])
+    World(random_cloud(np.random.default_rng(2), 4), np.zeros(3), collider=glb).save(tmp_path)
+    assert World.load(tmp_path).collider == glb
+
+
+def test_a_collider_is_z_up_here_and_y_up_in_its_file():
+    vertices, faces = [[0, 0, 0], [1, 0, 0], [0, 0, 2.5], [0, 3, 0]], [[0, 1, 2], [0, 3, 1]]
+    found, triangles = from_glb(to_glb(vertices, faces))
+    np.testing.assert_allclose(found[triangles], np.array(vertices)[faces], atol=1e-6)
+    stored = trimesh.load_scene(io.BytesIO(to_glb(vertices, faces)), file_type="glb").to_mesh()
+    np.testing.assert_allclose(stored.bounds, [[0, 0, -3], [1, 2.5, 0]], atol=1e-6)
+
+
+def test_a_collider_that_is_no_glb_is_refused():
+    with pytest.raises(WorldError, match="not a whole GLB"):
+        from_glb(b"glTF and then nothing")
+
+
+def test_the_panorama_travels_with_the_world_and_a_torn_one_is_refused(tmp_path):
+    panorama = np.zeros((32, 64, 3), np.uint8)
+    panorama[:, 32:] = (200, 120, 40)
+    World(random_cloud(np.random.default_rng(2), 4), np.zeros(3), panorama=panorama).save(tmp_path)
+    found = World.load(tmp_path).panorama
+    assert found.shape == (32, 64, 3)
+    assert np.abs(found[:, 48].astype(int) - [200, 120, 40]).max() < 6
+    (tmp_path / "panorama.jpg").write_bytes(b"torn")
+    with pytest.raises(ProductError, match="panorama"):
+        World.load(tmp_path)
 
 
 def test_torn_or_foreign_world_folders_are_refused(tmp_path):
