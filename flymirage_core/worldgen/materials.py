@@ -32,6 +32,7 @@ class Material:
     stretch: float = 1.0
     detail: float = 1.0
     seed: int = 0
+    opacity: float = 1.0  # of its splats: glass lets through what is behind it
 
     def shaded(self, factor: float) -> "Material":
         """The same material, lighter or darker."""

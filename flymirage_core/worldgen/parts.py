@@ -9,7 +9,10 @@ from numpy.typing import ArrayLike
 
 from flymirage_core.worldgen.colours import linear_rgb
 from flymirage_core.worldgen.materials import Material
-from flymirage_core.worldgen.surfaces import Block, Lathe, Leaves, Part, Sheet, Vector, tilted, upright
+from flymirage_core.worldgen.surfaces import Block, Leaves, Part, Patch, Sheet, Vector, tilted, upright
+
+AROUND = 24
+"""Sides of a turned shape's grid."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +47,11 @@ def turned(
     base: Vector = (0.0, 0.0, 0.0),
     scale: tuple[float, float] = (1.0, 1.0),
 ) -> Part:
-    """A lathed shape: (radius, height) points from the bottom up."""
-    return Part(Lathe(tuple(profile), scale), material, base)
+    """A lathed shape: (radius, height) points from the bottom up; outside is away from z where the profile rises."""
+    radius, height = np.asarray(profile, float).T
+    angle = -np.linspace(0.0, 2 * np.pi, AROUND + 1)
+    ring = np.stack([np.cos(angle) * scale[0], np.sin(angle) * scale[1], 0 * angle], 1)  # (A, 3)
+    return Part(Patch(radius[:, None, None] * ring + height[:, None, None] * np.array([0.0, 0.0, 1.0])), material, base)
 
 
 def cylinder(material: Material, radius: float, height: float, base: Vector = (0.0, 0.0, 0.0)) -> Part:
@@ -88,9 +94,7 @@ def tube(material: Material, points: ArrayLike, radius: float) -> list[Part]:
         x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
         x /= np.linalg.norm(x)
         rotation = np.stack([x, np.cross(z, x), z], axis=1)
-        parts.append(
-            Part(Lathe(((0.0, 0.0), (radius, 0.0), (radius, length), (0.0, length))), material, tuple(a), rotation)
-        )
+        parts.append(Part(cylinder(material, radius, length).surface, material, tuple(a), rotation))
     return parts
 
 

@@ -80,7 +80,7 @@ def splats(surfels: Surfels, colours: NDArray[np.float64]) -> GaussianCloud:
         surfels.points.astype(np.float32),
         quaternions.astype(np.float32),
         np.maximum(scales, 5e-4).astype(np.float32),
-        np.full(len(long), OPACITY, np.float32),
+        (OPACITY * surfels.opacity).astype(np.float32),
         ((colours - 0.5) / SH_C0).astype(np.float32)[:, None, :],
     )
 

@@ -18,8 +18,13 @@ Vector = tuple[float, float, float]
 
 EDGE_CELLS = (0.25, 0.5)
 """Widths of a patch's outermost cells as shares of the spacing: narrow, so that silhouettes are crisp."""
-MIN_AROUND = 6
-"""Fewest surfels round a lathed ring."""
+QUARTERS = ((-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), (0.25, 0.25))
+CORNER = 0.6
+"""Radians: where a patch turns more from one grid line to the next, it has an edge."""
+MAX_TURN = 0.8
+"""Radians that one surfel may span on a curved surface."""
+FEWER_LEAVES = 0.35
+"""Leaves smaller than this share of the spacing are drawn together into fewer, larger ones."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +37,7 @@ class Surfels:
     normals: Float  # (N, 3) unit, outward
     albedo: Float  # (N, 3) linear
     emission: Float  # (N,) radiance given off, as a multiple of albedo
+    opacity: Float  # (N,) 1 where solid, less for glass
 
     def __len__(self) -> int:
         return len(self.points)
@@ -45,15 +51,17 @@ class Surfels:
         return np.asarray(np.linalg.norm(self.along, axis=1) * np.linalg.norm(self.across, axis=1))
 
     def moved(self, rotation: Float, offset: ArrayLike) -> "Surfels":
-        """Turned by ``rotation`` (3, 3), then shifted by ``offset`` (3,) metres."""
+        """Mapped by the linear map ``rotation`` (3, 3), then shifted by ``offset`` (3,) metres."""
         turn = rotation.T
+        normals = self.normals @ np.linalg.inv(rotation)  # a stretched surface's normal goes by the inverse transpose
         return Surfels(
             self.points @ turn + np.asarray(offset),
             self.along @ turn,
             self.across @ turn,
-            self.normals @ turn,
+            normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12),
             self.albedo,
             self.emission,
+            self.opacity,
         )
 
     @staticmethod
@@ -78,12 +86,14 @@ class Block:
     radius: float = 0.0
 
 
-@dataclass(frozen=True)
-class Lathe:
-    """A profile of (radius, z) points turned about z, scaled in x and y. Where it rises, outside is away from z."""
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """A surface through a grid of points (P, Q, 3): turned, swept, lofted, bent. Its front is cross(down P, along Q).
 
-    profile: tuple[tuple[float, float], ...]
-    scale: tuple[float, float] = (1.0, 1.0)
+    Neighbouring rows or columns that turn by more than `CORNER` meet in an edge; less is one smooth surface.
+    """
+
+    grid: Float
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,17 +105,17 @@ class Leaves:
     widths: Float
 
 
-Surface = Sheet | Block | Lathe | Leaves
+Surface = Sheet | Block | Patch | Leaves
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A surface of one material at its place in the object."""
+    """A surface of one material at its place in the object: mapped by ``rotation``, then shifted by ``offset``."""
 
     surface: Surface
     material: Material
     offset: Vector = (0.0, 0.0, 0.0)
-    rotation: Float = field(default_factory=lambda: np.eye(3))  # (3, 3)
+    rotation: Float = field(default_factory=lambda: np.eye(3))  # (3, 3) linear map, a rotation or a stretch
 
 
 def surfels_of(part: Part, spacing: float) -> Surfels:
@@ -116,10 +126,10 @@ def surfels_of(part: Part, spacing: float) -> Surfels:
         pieces = [_sheet(surface, material, spacing)]
     elif isinstance(surface, Block):
         pieces = _block(surface, material, spacing)
-    elif isinstance(surface, Lathe):
-        pieces = _lathe(surface, material, spacing)
+    elif isinstance(surface, Patch):
+        pieces = _patch(surface, material, spacing)
     else:
-        pieces = [_leaves(surface, material)]
+        pieces = [_leaves(surface, material, spacing)]
     return Surfels.joined(pieces).moved(part.rotation, part.offset)
 
 
@@ -147,11 +157,18 @@ def cells(length: float, spacing: float, pitch: float = 0.0, joint: float = 0.0)
 def _dressed(
     points: Float, along: Float, across: Float, material: Material, uv: Float, extent: tuple[float, float]
 ) -> Surfels:
-    """Give surfels their normals and colours."""
+    """Give surfels their normals and colours: each the mean of its four quarters, so that no texture is finer than it.
+
+    ``uv`` (N, 2) is the middle; u runs with ``along``.
+    """
     normals = np.cross(along, across)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    colours = albedo(material, uv, extent, points)
-    return Surfels(points, along, across, normals, colours, np.full(len(points), material.emission))
+    lengths = np.stack([np.linalg.norm(along, axis=1), np.linalg.norm(across, axis=1)], 1)  # (N, 2)
+    colours = np.zeros((len(points), 3))
+    for a, b in QUARTERS:
+        colours += albedo(material, uv + lengths * (a, b), extent, points + a * along + b * across)
+    ones = np.ones(len(points))
+    return Surfels(points, along, across, normals, colours / 4, material.emission * ones, material.opacity * ones)
 
 
 def _spacings(material: Material, spacing: float) -> tuple[float, float]:
@@ -162,22 +179,22 @@ def _spacings(material: Material, spacing: float) -> tuple[float, float]:
 def _sheet(sheet: Sheet, material: Material, spacing: float) -> Surfels:
     a, b = np.asarray(sheet.a, float), np.asarray(sheet.b, float)
     extent = (float(np.linalg.norm(a)), float(np.linalg.norm(b)))
-    swap = (
-        material.stretch > 1 and extent[1] > extent[0] and material.joints == (0.0, 0.0, 0.0)
-    )  # grain runs lengthwise
-    du, dv = _spacings(material, spacing)[:: -1 if swap else 1]
+    lengthwise = material.stretch > 1 and extent[1] > extent[0] and material.joints == (0.0, 0.0, 0.0)
+    du, dv = _spacings(material, spacing)[:: -1 if lengthwise else 1]
     u, wu = cells(extent[0], du, material.joints[0], material.joints[2])
     v, wv = cells(extent[1], dv, material.joints[1], material.joints[2])
     uu, vv = np.repeat(u, len(v)), np.tile(v, len(u))
     a, b = a / extent[0], b / extent[1]
     points = np.asarray(sheet.corner) + uu[:, None] * a + vv[:, None] * b
     along, across = np.repeat(wu, len(v))[:, None] * a, np.tile(wv, len(u))[:, None] * b
-    uv = np.stack([vv, uu] if swap else [uu, vv], 1)
-    return _dressed(points, along, across, material, uv, extent[::-1] if swap else extent)
+    if lengthwise:  # the grain runs along the longer side
+        return _dressed(points, across, -along, material, np.stack([vv, uu], 1), extent[::-1])
+    return _dressed(points, along, across, material, np.stack([uu, vv], 1), extent)
 
 
 def _block(block: Block, material: Material, spacing: float) -> list[Surfels]:
     half = np.asarray(block.size, float) / 2
+    radius = min(block.radius, float(half.min()) * 0.999)
     pieces = []
     for axis in range(3):
         for sign in (-1.0, 1.0):
@@ -185,7 +202,7 @@ def _block(block: Block, material: Material, spacing: float) -> list[Surfels]:
             corner, a, b = np.where(np.arange(3) == axis, sign * half, -half), np.zeros(3), np.zeros(3)
             a[i], b[j] = 2 * half[i], 2 * half[j]
             flat = _sheet(Sheet(_vector(corner), _vector(a), _vector(b)), material, spacing)
-            pieces.append(_rounded(flat, half, block.radius) if block.radius > 0 else flat)
+            pieces.append(_rounded(flat, half, radius) if radius > 0 else flat)
     return pieces
 
 
@@ -195,55 +212,133 @@ def _vector(array: Float) -> Vector:
 
 def _rounded(flat: Surfels, half: Float, radius: float) -> Surfels:
     """Surfels on a sharp box drawn in onto the box with rounded edges."""
-    inner = half - min(radius, float(half.min()) * 0.999)
-
-    def draw_in(points: Float) -> tuple[Float, Float]:
-        core = np.clip(points, -inner, inner)
-        out = points - core
-        out = out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
-        return core + out * (half - inner).min(), out
-
-    points, normals = draw_in(flat.points)
-    along = draw_in(flat.points + flat.along / 2)[0] - draw_in(flat.points - flat.along / 2)[0]
-    across = draw_in(flat.points + flat.across / 2)[0] - draw_in(flat.points - flat.across / 2)[0]
-    return Surfels(points, along, across, normals, flat.albedo, flat.emission)
+    points = drawn_in(flat.points, half, radius)
+    along, across = (
+        drawn_in(flat.points + edge / 2, half, radius) - drawn_in(flat.points - edge / 2, half, radius)
+        for edge in (flat.along, flat.across)
+    )
+    out = points - np.clip(points, -(half - radius), half - radius)
+    normals = out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
+    return Surfels(points, along, across, normals, flat.albedo, flat.emission, flat.opacity)
 
 
-def _lathe(lathe: Lathe, material: Material, spacing: float) -> list[Surfels]:
-    pieces: list[Surfels] = []
-    profile = np.asarray(lathe.profile, float)  # (P, 2)
-    scale = np.array([*lathe.scale, 1.0])
-    start = 0.0
-    du, dv = _spacings(material, spacing)[::-1]
-    for (r0, z0), (r1, z1) in pairwise(profile):
-        length = float(np.hypot(r1 - r0, z1 - z0))
-        if length < 1e-6:
-            continue
-        short = length < 1.5 * dv
-        centre, width = (np.array([length / 2]), np.array([length])) if short else cells(length, dv)
-        for s, w in zip(centre, width, strict=True):
-            t = s / length
-            r, z = r0 + t * (r1 - r0), z0 + t * (z1 - z0)
-            around = max(MIN_AROUND, int(np.ceil(2 * np.pi * r * max(lathe.scale) / du)))
-            angle = (np.arange(around) + 0.5 * (len(pieces) % 2)) * (2 * np.pi / around)
-            out = np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)  # (A, 3)
-            turn = np.stack([-np.sin(angle), np.cos(angle), 0 * angle], 1)
-            points = (out * r + [0, 0, z]) * scale
-            along = turn * (2 * np.pi * r / around) * scale
-            across = (out * ((r1 - r0) / length) + [0, 0, (z1 - z0) / length]) * w * scale
-            uv = np.stack([np.full(around, start + s), angle * max(r, 0.02)], 1)
-            pieces.append(_dressed(points, along, across, material, uv, (1.0, 1.0)))
-        start += length
+def drawn_in(points: Float, half: Float, radius: float) -> Float:
+    """Points (N, 3) on a sharp box of half size ``half`` drawn in onto the box with edges rounded by ``radius``."""
+    core = np.clip(points, -(half - radius), half - radius)
+    out = points - core
+    return np.asarray(core + radius * out / np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12))
+
+
+def _patch(patch: Patch, material: Material, spacing: float) -> list[Surfels]:
+    """Rows of surfels down the grid, and in each row as many as its length there needs."""
+    grid = np.concatenate([patch.grid, patch_uv(patch.grid)], axis=2)  # (P, Q, 5)
+    du, dv = _spacings(material, spacing)
+    rows = _row_bounds(patch.grid, du)
+    if len(rows) == 0:
+        return []
+    middle = rows.mean(axis=1)
+    steps, turns = _steps(patch.grid.swapaxes(0, 1))  # (Q - 1,), (Q - 2,)
+    pieces = []
+    for a, b in pairwise(_corners(turns)):
+        line = np.stack([_at(grid, middle, np.full(len(middle), float(q)))[:, :3] for q in range(a, b + 1)], 1)
+        lengths = np.linalg.norm(np.diff(line, axis=1), axis=2).sum(axis=1)  # (R,)
+        fewest = np.ceil(turns[a : b - 1].sum() / MAX_TURN)
+        counts = np.where(lengths > 1e-5, np.maximum(np.rint(lengths / dv), max(fewest, 1.0)), 0.0).astype(int)
+        row = np.repeat(np.arange(len(rows)), counts)
+        k = np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
+        reach = np.concatenate([[0.0], np.cumsum(steps[a:b])])
+        smooth_ring = b - a == len(steps) and _closed(patch.grid)
+        left, right = (
+            np.interp(_bound(j, counts[row], smooth_ring) * reach[-1], reach, np.arange(a, b + 1)) for j in (k, k + 1)
+        )
+        if len(row):
+            pieces.append(_patch_surfels(grid, rows[row], left, right, material))
     return pieces
 
 
-def _leaves(leaves: Leaves, material: Material) -> Surfels:
-    """Two surfels a leaf, tapering to its tip."""
-    centres = np.concatenate([leaves.centres - 0.35 * leaves.lengths, leaves.centres + 0.4 * leaves.lengths])
-    along = np.concatenate([leaves.lengths * 1.1, leaves.lengths * 0.9])
-    across = np.concatenate([leaves.widths * 1.5, leaves.widths * 1.0])
-    uv = np.zeros((len(centres), 2))
-    return _dressed(centres, along, across, material, uv, (1.0, 1.0))
+def _patch_surfels(grid: Float, rows: Float, left: Float, right: Float, material: Material) -> Surfels:
+    """One surfel for each cell between two row positions (N, 2) and two column positions (N,)."""
+    top, bottom, r, q = rows[:, 0], rows[:, 1], rows.mean(axis=1), (left + right) / 2
+    centre = _at(grid, r, q)
+    along = (_at(grid, bottom, q) - _at(grid, top, q))[:, :3]
+    across = (_at(grid, r, right) - _at(grid, r, left))[:, :3]
+    extent = (float(grid[..., 3].max()), float(grid[..., 4].max()))
+    return _dressed(centre[:, :3], along, across, material, centre[:, 3:], extent)
+
+
+def patch_uv(grid: Float) -> Float:
+    """(P, Q, 2) surface coordinates of a patch's grid points in metres: u down its rows, v along each."""
+    down = np.linalg.norm(np.diff(grid, axis=0), axis=2).mean(axis=1)
+    along = np.linalg.norm(np.diff(grid, axis=1), axis=2)
+    u = np.repeat(np.concatenate([[0.0], np.cumsum(down)])[:, None], grid.shape[1], axis=1)
+    return np.stack([u, np.concatenate([np.zeros((len(grid), 1)), np.cumsum(along, axis=1)], axis=1)], axis=2)
+
+
+def _steps(grid: Float) -> tuple[Float, Float]:
+    """Mean distances from row to row (P - 1,) and mean angles between two steps (P - 2,)."""
+    step = np.diff(grid, axis=0)
+    length = np.linalg.norm(step, axis=2)  # (P - 1, Q)
+    unit = step / np.maximum(length, 1e-12)[..., None]
+    angle = np.arccos(np.clip((unit[1:] * unit[:-1]).sum(axis=2), -1, 1))
+    weight = np.minimum(length[1:], length[:-1])
+    return length.mean(axis=1), (angle * weight).sum(axis=1) / np.maximum(weight.sum(axis=1), 1e-12)
+
+
+def _corners(turns: Float) -> list[int]:
+    return [0, *(int(i) + 1 for i in np.flatnonzero(turns > CORNER)), len(turns) + 1]
+
+
+def _row_bounds(grid: Float, spacing: float) -> Float:
+    """(R, 2) where each row of surfels begins and ends, as fractional row numbers of the grid."""
+    steps, turns = _steps(grid)
+    rows = []
+    for a, b in pairwise(_corners(turns)):
+        reach = np.concatenate([[0.0], np.cumsum(steps[a:b])])
+        if reach[-1] < 1e-5:
+            continue
+        count = max(1, round(reach[-1] / spacing), int(np.ceil(turns[a : b - 1].sum() / MAX_TURN)))
+        bounds = _bound(np.arange(count + 1), np.full(count + 1, count), False) * reach[-1]
+        at = np.interp(bounds, reach, np.arange(a, b + 1))
+        rows.append(np.stack([at[:-1], at[1:]], 1))
+    return np.concatenate(rows) if rows else np.zeros((0, 2))
+
+
+def _bound(k: NDArray[np.intp], count: NDArray[np.intp], even: bool) -> Float:
+    """Share of the way at which the k-th of ``count`` cells begins: narrower at both ends, so that edges are crisp."""
+    first, second = EDGE_CELLS
+    near = np.minimum(k, count - k)
+    inset = np.where(near <= 0, 0.0, np.where(near == 1, first, near - 2 + first + second))
+    total = count - 4 + 2 * (first + second)
+    narrow = np.where(k <= count / 2, inset, total - inset) / np.maximum(total, 1e-9)
+    return np.where((count < 4) | even, k / np.maximum(count, 1), narrow)
+
+
+def _closed(grid: Float) -> bool:
+    return bool(np.abs(grid[:, 0] - grid[:, -1]).max() < 1e-9)
+
+
+def _at(grid: Float, rows: Float, columns: Float) -> Float:
+    """(N, C) bilinear values of a grid (P, Q, C) at fractional row and column numbers."""
+    i = np.clip(rows.astype(int), 0, grid.shape[0] - 2)
+    j = np.clip(columns.astype(int), 0, grid.shape[1] - 2)
+    s, t = (rows - i)[:, None], (columns - j)[:, None]
+    upper = grid[i, j] * (1 - t) + grid[i, j + 1] * t
+    return np.asarray(upper * (1 - s) + (grid[i + 1, j] * (1 - t) + grid[i + 1, j + 1] * t) * s)
+
+
+def _leaves(leaves: Leaves, material: Material, spacing: float) -> Surfels:
+    """Two surfels a leaf, tapering to its tip; where they are too fine for the spacing, fewer and larger leaves."""
+    area = float((np.linalg.norm(leaves.lengths, axis=1) * np.linalg.norm(leaves.widths, axis=1)).mean())
+    stride = max(1, int((FEWER_LEAVES * spacing / 2) ** 2 / max(area, 1e-9)))
+    grown = np.sqrt(stride)
+    centres, lengths, widths = leaves.centres[::stride], leaves.lengths[::stride], leaves.widths[::stride]
+    lengths, widths = lengths * grown, widths * grown
+    outward = centres - leaves.centres.mean(axis=0)
+    facing = np.where((np.cross(lengths, widths) * outward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    points = np.concatenate([centres - 0.35 * lengths, centres + 0.4 * lengths])
+    along = np.concatenate([lengths * 1.1, lengths * 0.9])
+    across = np.concatenate([widths * 1.5 * facing, widths * 1.0 * facing])
+    return _dressed(points, along, across, material, np.zeros((len(points), 2)), (1.0, 1.0))
 
 
 def upright(yaw: float) -> Float:
