@@ -23,3 +23,47 @@ class ProductError(FlyMirageError):
 
 class PlanningError(FlyMirageError):
     """A flight or camera path cannot be planned; the text says why."""
+
+
+class ServiceError(FlyMirageError):
+    """An outside service did not do what was asked, and asking again for the same would not help."""
+
+
+class TransientServiceError(ServiceError):
+    """A service is busy, slow or down: the same request may succeed after ``retry_after`` seconds (None: unknown)."""
+
+    def __init__(self, sentence: str, retry_after: float | None = None) -> None:
+        super().__init__(sentence)
+        self.retry_after = retry_after
+
+
+class ModerationError(ServiceError):
+    """A service refused a scene's content; the scene needs another description."""
+
+
+class BadAnswerError(ServiceError):
+    """A service answered with something that is not what it promised, also after one repair call."""
+
+
+class LostStartError(ServiceError):
+    """A paid request was sent, its answer was lost, and no trace of it was found: a person decides."""
+
+
+class SceneBudgetError(ServiceError):
+    """The next call could cost more than one scene may."""
+
+
+class NightStopError(ServiceError):
+    """No further scene can be paid for: everything else of this night would fail in the same way."""
+
+
+class KeyRefusedError(NightStopError):
+    """A service's key is missing, wrong, or has no access to the model."""
+
+
+class QuotaError(NightStopError):
+    """Credits or quota of an account are used up."""
+
+
+class BudgetError(NightStopError):
+    """The next call could cost more than the night's or the month's cap."""

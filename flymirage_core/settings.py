@@ -10,6 +10,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
+from flymirage_core.service_settings import ServicesSettings
+
 Positive = Annotated[float, Field(gt=0)]
 NotNegative = Annotated[float, Field(ge=0)]
 Count = Annotated[int, Field(ge=1)]
@@ -228,6 +230,16 @@ class VerdictSettings(Section):
     """The paper samples every 30th frame of a 30 Hz video; at another rate the same seconds are meant."""
 
 
+class ToolSettings(Section):
+    """Who fills each port; "" leaves it to the profile."""
+
+    scene_writer: Literal["", "offline", "service"] = ""
+    image_painter: Literal["", "offline", "service"] = ""
+    world_model: Literal["", "offline", "service"] = ""
+    frame_judge: Literal["", "offline", "service"] = ""
+    prompter: Literal["", "offline", "service"] = ""
+
+
 class Settings(BaseSettings):
     """All settings of a FlyMirage project."""
 
@@ -235,7 +247,9 @@ class Settings(BaseSettings):
         env_prefix="FLYMIRAGE_", env_nested_delimiter="__", toml_file="flymirage.toml", frozen=True, extra="forbid"
     )
 
-    profile: Literal["offline"] = "offline"
+    profile: Literal["offline", "paper"] = "offline"
+    """"offline" asks nobody; "paper" asks the paper's services: LLM, image model, Marble, VLM."""
+    tools: ToolSettings = ToolSettings()
     store: str = ".flymirage/store"
     """A local path or any fsspec URL."""
     renderer: Literal["auto", "cpu", "gsplat"] = "auto"
@@ -255,6 +269,7 @@ class Settings(BaseSettings):
     quadrotor: QuadrotorSettings = QuadrotorSettings()
     frames: FrameSettings = FrameSettings()
     verdict: VerdictSettings = VerdictSettings()
+    services: ServicesSettings = ServicesSettings()
 
     @model_validator(mode="after")
     def _frames_are_states(self) -> "Settings":
