@@ -32,7 +32,7 @@ GOAL: tuple[int, int, int] = (205, 60, 45)
 
 def description(stage: Stage, product: SceneDescription) -> Picture:
     asked = ", ".join(f"{o.count} {o.colour} {o.noun}" for o in product.objects)
-    place = f"{product.category} / {product.subcategory}; {product.style}; {product.light}"
+    place = f"{product.category} / {product.subcategory}; {product.style}; {product.light.words}"
     return text_card(product.title, [p for p in (place, product.prose, asked) if p.strip("/; ")])
 
 

@@ -8,6 +8,7 @@ from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.picture import ScenePicture
 from flymirage_core.rendering.rasterizer import Rasterizer
 from flymirage_core.scene.description import Provenance, SceneDescription
+from flymirage_core.scene.design import Light
 from flymirage_core.settings import CleaningSettings
 from flymirage_core.splats.imports import import_world
 from flymirage_core.splats.world import World
@@ -34,11 +35,15 @@ def describe_import(origin: SceneOrigin) -> SceneDescription:
         subcategory="imported",
         setting="indoor",
         dimensions=(0.0, 0.0, 0.0),
+        zones=(),
         style="",
+        era="",
         palette=(),
-        light="",
+        light=Light(time_of_day="noon", sky="none", sources=("sky",), words="as captured"),
         objects=(),
         prose=f"{title}: a Gaussian-splat world imported from {origin.file_name}.",
+        image_prompt="",
+        world_prompt="",
         provenance=Provenance(
             kind="imported",
             writer="import",

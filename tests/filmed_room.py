@@ -18,6 +18,7 @@ from flymirage_core.rendering.frames import BodyPath, CameraRig, Frames, cameras
 from flymirage_core.rendering.rasterizer import Rendering
 from flymirage_core.rendering.recording import record_frames
 from flymirage_core.scene.description import Provenance, SceneDescription
+from flymirage_core.scene.design import Light, Zone
 from flymirage_core.settings import VerdictSettings
 from flymirage_core.splats.cloud import GaussianCloud
 
@@ -183,11 +184,15 @@ def description(scene: str) -> SceneDescription:
         subcategory="living room",
         setting="indoor",
         dimensions=(12.0, 12.0, 3.0),
+        zones=(Zone(name="room", kind="room", dimensions=(12.0, 12.0, 3.0), surfaces=(), connects_to=(), windows=0),),
         style="plain",
+        era="",
         palette=("grey",),
-        light="day",
+        light=Light(time_of_day="noon", sky="none", sources=("ceiling_lamps",), words="even lamp light"),
         objects=(),
         prose="A room.",
+        image_prompt="A room.",
+        world_prompt="A room.",
         provenance=Provenance(kind="generated", writer="offline 1"),
     )
 

@@ -1,9 +1,11 @@
-"""`SceneDescription`, the product of the `description` asset: what an LLM or the offline writer fills in."""
+"""`SceneDescription`, the product of the `description` asset: the design of a scene, and where it comes from."""
 
 from pathlib import Path
 from typing import Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict
+
+from flymirage_core.scene.design import SceneDesign
 
 
 class Provenance(BaseModel):
@@ -19,36 +21,18 @@ class Provenance(BaseModel):
     scale: float = 0.0  # imported: metres per file unit; 0 = the file is in metres
 
 
-class PlannedObject(BaseModel):
-    """One kind of thing in the scene, as the description asks for it."""
-
-    model_config = ConfigDict(frozen=True)
-
-    noun: str  # "bookshelf"
-    count: int = Field(ge=1)
-    colour: str
-    material: str
-    placement: Literal["against_wall", "on_floor", "on_surface", "on_wall", "hanging", "around", "in_row"]
-    relative_to: str = ""  # noun of the thing it stands on, or around; "" if none
-
-
-class SceneDescription(BaseModel):
-    """A structured scene specification and its prose. Dimensions in metres (x, y, z)."""
-
-    model_config = ConfigDict(frozen=True)
+class SceneDescription(SceneDesign):
+    """The design of a scene that has a key, and where it comes from. An imported world's design is empty."""
 
     scene: str
-    title: str
     category: str  # taxonomy category, or "imported"
     subcategory: str
-    setting: Literal["indoor", "outdoor"]
-    dimensions: tuple[float, float, float]
-    style: str
-    palette: tuple[str, ...]  # colour names, the walls' first
-    light: str
-    objects: tuple[PlannedObject, ...]
-    prose: str
     provenance: Provenance
+
+    def check(self) -> None:
+        """As a design's; of an import there is nothing to check."""
+        if self.provenance.kind == "generated":
+            super().check()
 
     def summary(self) -> dict[str, str | int | float]:
         return {

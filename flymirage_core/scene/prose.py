@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from flymirage_core.scene.description import PlannedObject, SceneDescription
+from flymirage_core.scene.description import SceneDescription
+from flymirage_core.scene.design import PlannedObject
 
 NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
 IRREGULAR = {"bookshelf": "bookshelves", "low bookshelf": "low bookshelves", "wall shelf": "wall shelves"}
@@ -94,14 +95,17 @@ def prose_of(description: SceneDescription, generator: np.random.Generator) -> s
         return frames[int(generator.integers(len(frames)))]
 
     x, y, z = description.dimensions
-    style, floor, walls = (part.strip() for part in description.style.split(","))
-    place, ground = description.subcategory, f"{description.palette[1]} {floor}"
+    floor, walls = (f"{s.material} {s.part}" for s in description.zones[0].surfaces[:2])
+    style, place, ground = description.style, description.subcategory, f"{description.palette[1]} {floor}"
     sentences = [
         one(OPENINGS).format(
             a_style=f"{article(style).capitalize()} {style}", style=style, place=place, x=count(x), y=count(y), z=z
         ),
         one(FLOORS).format(
-            wall=description.palette[0], walls=walls, a_floor=f"{article(ground)} {ground}", light=description.light
+            wall=description.palette[0],
+            walls=walls,
+            a_floor=f"{article(ground)} {ground}",
+            light=description.light.words,
         ),
     ]
     for placement, frames in PLACES.items():

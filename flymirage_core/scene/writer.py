@@ -8,7 +8,8 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
-from flymirage_core.scene.description import PlannedObject, Provenance, SceneDescription
+from flymirage_core.scene.description import Provenance, SceneDescription
+from flymirage_core.scene.design import Light, PlannedObject, Surface, Zone
 from flymirage_core.scene.keys import check_scene_key, rng
 from flymirage_core.scene.prose import prose_of
 from flymirage_core.scene.taxonomy import Taxonomy, standard_taxonomy
@@ -50,27 +51,43 @@ class OfflineSceneWriter:
         look = data["categories"].get(category) or _any(generator, list(data["categories"].values()))
         kits = data["subcategories"].get(subcategory) or _any(generator, list(data["subcategories"].values()))
         wall, floor = _any(generator, look["wall_colours"]), _any(generator, look["floor_colours"])
-        style = (
-            f"{_any(generator, look['styles'])}, {_any(generator, look['floors'])}, {_any(generator, look['walls'])}"
-        )
+        floors, walls = _any(generator, look["floors"]), _any(generator, look["walls"])
+        style = _any(generator, look["styles"])
         objects = _objects(data, kits, look["fillers"], generator)
         accents = [o.colour for o in objects if o.placement in ("against_wall", "on_floor")][:3]
         x, y, z = (round(float(generator.uniform(a, b)), 1) for a, b in SIZE_RANGE)
+        surfaces = (
+            Surface(part="floor", colour=floor, material=floors.removesuffix(" floor")),
+            Surface(part="walls", colour=wall, material=walls.removesuffix(" walls")),
+            Surface(part="ceiling", colour="white", material="plaster"),
+        )
         description = SceneDescription(
             scene=scene_key,
-            title=f"{style.split(',')[0].capitalize()} {subcategory}",
+            title=f"{style.capitalize()} {subcategory}",
             category=category,
             subcategory=subcategory,
             setting="indoor",
             dimensions=(x, y, z),
+            zones=(
+                Zone(name=subcategory, kind="room", dimensions=(x, y, z), surfaces=surfaces, connects_to=(), windows=3),
+            ),
             style=style,
+            era="",
             palette=(wall, floor, *dict.fromkeys(accents)),
-            light=_any(generator, data["lights"]),
+            light=Light(
+                time_of_day="afternoon",
+                sky="clear",
+                sources=("windows", "hanging_lamps"),
+                words=_any(generator, data["lights"]),
+            ),
             objects=objects,
             prose="",
+            image_prompt="",
+            world_prompt="",
             provenance=Provenance(kind="generated", writer=NAME),
         )
-        return description.model_copy(update={"prose": prose_of(description, generator)})
+        prose = prose_of(description, generator)
+        return description.model_copy(update={"prose": prose, "image_prompt": prose, "world_prompt": prose})
 
 
 class Want(NamedTuple):

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from flymirage_core.scene.description import PlannedObject, SceneDescription
+from flymirage_core.scene.description import SceneDescription
+from flymirage_core.scene.design import PlannedObject
 from flymirage_core.scene.keys import rng as seeded
 from flymirage_core.worldgen.catalogue import Kind, kind_of
 from flymirage_core.worldgen.footprints import Occupied, Solid

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.scene.description import SceneDescription
+from flymirage_core.scene.design import Surface
 from flymirage_core.scene.keys import rng as seeded
 from flymirage_core.worldgen.colours import linear_rgb
 from flymirage_core.worldgen.materials import Material
@@ -81,7 +82,7 @@ def room_for(description: SceneDescription) -> Room:
         along = np.array([-normal[1], normal[0]])
         walls.append(Wall(corner, along, normal, x if normal[0] == 0 else y))
     rng = seeded(description.scene, "room")
-    window_walls = [int(w) for w in rng.permutation(4)[:2]] if "window" in description.light else []
+    window_walls = [int(w) for w in rng.permutation(4)[:2]] if description.zones[0].windows else []
     windows = []
     for wall in window_walls:
         count = 2 if walls[wall].length > 8.5 else 1
@@ -99,10 +100,10 @@ def room_for(description: SceneDescription) -> Room:
 def shell(room: Room, description: SceneDescription) -> list[Part]:
     """Floor, ceiling, walls and skirting, closed, in world coordinates."""
     x, y, z = room.dimensions
-    clauses, palette = description.style.lower().split(","), description.palette
+    surfaces = {s.part: s for s in description.zones[0].surfaces}
     seed = int(seeded(description.scene, "shell").integers(1 << 16))
-    floor = _finish(FLOORS, [c for c in clauses if "floor" in c], palette[1 % len(palette)], seed)
-    wall = _finish(WALLS, [c for c in clauses if "wall" in c], palette[0], seed + 1)
+    floor = _finish(FLOORS, surfaces["floor"], seed)
+    wall = _finish(WALLS, surfaces["walls"], seed + 1)
     parts = [
         Part(Sheet((-x / 2, -y / 2, 0.0), (x, 0.0, 0.0), (0.0, y, 0.0)), floor),
         Part(Sheet((-x / 2, y / 2, z), (x, 0.0, 0.0), (0.0, -y, 0.0)), paint("white", "plaster", detail=2.6)),
@@ -123,10 +124,10 @@ def fixtures(room: Room, description: SceneDescription) -> list[list[Part]]:
     return windows + [_door(room.walls[d.wall], d, DOOR_COLOURS[seed % len(DOOR_COLOURS)]) for d in room.doors]
 
 
-def _finish(choices: dict[str, Material], clauses: list[str], colour: str, seed: int) -> Material:
-    """The finish that the description's words ("oak plank floor") name, else the last, plainest choice."""
-    base = next((m for name, m in choices.items() if any(name in c for c in clauses)), list(choices.values())[-1])
-    return replace(base, colour=linear_rgb(colour), seed=seed)
+def _finish(choices: dict[str, Material], surface: Surface, seed: int) -> Material:
+    """The finish that the surface's material ("oak plank") names, else the last, plainest choice."""
+    base = next((m for name, m in choices.items() if name in surface.material), list(choices.values())[-1])
+    return replace(base, colour=linear_rgb(surface.colour), seed=seed)
 
 
 def _against(line: Wall, parts: list[Part], along: float, bottom: float = 0.0) -> list[Part]:

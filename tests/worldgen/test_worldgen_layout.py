@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from flymirage_core.scene.description import PlannedObject
+from flymirage_core.scene.design import PlannedObject
 from flymirage_core.scene.writer import OfflineSceneWriter
 from flymirage_core.worldgen.catalogue import kind_of
 from flymirage_core.worldgen.footprints import Occupied, Solid
