@@ -10,6 +10,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
+from flymirage_core.operation_settings import Executor, GrowthSettings, OperationSettings
 from flymirage_core.service_settings import ServicesSettings
 
 Positive = Annotated[float, Field(gt=0)]
@@ -256,6 +257,10 @@ class Settings(BaseSettings):
     """Who renders: "gsplat" needs a CUDA card and the ``[gpu]`` extra; "auto" takes it where both are there."""
     threads: int = Field(default=0, ge=0)
     """Rendering threads of the CPU renderer; 0 = all cores."""
+    executor: Executor = "in_process"
+    """Who runs the stages of a run: this process, a process each, or the workers of a Celery or Ray cluster."""
+    growth: GrowthSettings = GrowthSettings()
+    operation: OperationSettings = OperationSettings()
 
     generation: GenerationSettings = GenerationSettings()
     cleaning: CleaningSettings = CleaningSettings()
