@@ -1,51 +1,21 @@
 """What the embedded world model can build: for each noun its size range, its builder, and whether it has a top."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from flymirage_core.worldgen import shapes_decor as decor
 from flymirage_core.worldgen import shapes_furniture as furniture
 from flymirage_core.worldgen import shapes_utility as utility
-from flymirage_core.worldgen.parts import Finish
-from flymirage_core.worldgen.surfaces import Part, Vector
-
-Builder = Callable[[Vector, Finish], list[Part]]
-
-
-@dataclass(frozen=True)
-class Kind:
-    """A buildable kind of thing: sizes in metres (x, y, z) from ``smallest`` to ``largest``.
-
-    ``top`` is where small things can stand, as a share of its height (0 = nowhere). A ``square``
-    kind keeps its proportions; a ``full_height`` one reaches from floor to ceiling; a ``flat`` one lies under things.
-    """
-
-    build: Builder
-    smallest: Vector
-    largest: Vector
-    top: float = 0.0
-    square: bool = False
-    full_height: bool = False
-    flat: bool = False
-
-    def size(self, rng: np.random.Generator, room_height: float) -> Vector:
-        """A size within the range: large in all directions or small in all, with some freedom unless ``square``."""
-        large = rng.uniform(0.0, 1.0)
-        share = np.full(3, large) if self.square else np.clip(large + rng.normal(0.0, 0.2, 3), 0.0, 1.0)
-        x, y, z = (a + s * (b - a) for a, b, s in zip(self.smallest, self.largest, share, strict=True))
-        return x, y, room_height if self.full_height else z
+from flymirage_core.worldgen.kinds import Builder, Kind
 
 
 def _kind(
     build: Builder, x: tuple[float, float], y: tuple[float, float], z: tuple[float, float], top: float = 0.0
 ) -> Kind:
-    return Kind(build, (x[0], y[0], z[0]), (x[1], y[1], z[1]), top)
+    return Kind(build, (x[0], y[0], z[0]), (x[1], y[1], z[1]), top=top)
 
 
 def _round(build: Builder, width: tuple[float, float], z: tuple[float, float], top: float = 0.0) -> Kind:
-    return Kind(build, (width[0], width[0], z[0]), (width[1], width[1], z[1]), top, square=True)
+    return Kind(build, (width[0], width[0], z[0]), (width[1], width[1], z[1]), top=top, square=True)
 
 
 KINDS: dict[str, Kind] = {

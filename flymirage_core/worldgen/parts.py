@@ -17,14 +17,23 @@ AROUND = 24
 
 @dataclass(frozen=True)
 class Finish:
-    """The materials of one object: its main one, a second one for legs and frames, and a seed for its details."""
+    """The materials of one object: its main one, and a second one for legs and frames.
+
+    ``seed`` draws what differs between two of a kind (their books, leaves); ``style`` what all of a kind in one scene
+    share (the chairs' backs).
+    """
 
     main: Material
     second: Material
     seed: int
+    style: int = 0
 
     def generator(self) -> np.random.Generator:
         return np.random.default_rng(self.seed)
+
+    def chosen(self, count: int) -> int:
+        """Which of ``count`` designs this scene's things of the kind have."""
+        return int(np.random.default_rng(self.style).integers(count))
 
 
 def paint(colour: str, texture: str = "plain", emission: float = 0.0, detail: float = 1.0, seed: int = 0) -> Material:
