@@ -6,6 +6,7 @@ Layout under the base (a local path or any fsspec URL)::
     imports/<scene>/<file>                     the world file a user brought
     products/<asset>/<scene>/<digest>/...      files, named by their content
     products/<asset>/<scene>/product.json      written last: which digest is current, and its provenance
+    services/<scene>/...                       answers that were paid for, and journals of paid requests
     staging/                                   work in progress; never read, swept when old
 
 A writer that is killed leaves at most an unreferenced folder. Reading goes by ``product.json`` alone.
@@ -167,6 +168,23 @@ class Store:
         finally:
             shutil.rmtree(folder, ignore_errors=True)
 
+    # What services answered ------------------------------------------------------------------------------------------
+
+    def write_service_file(self, name: str, data: bytes) -> None:
+        """Keep ``data`` under ``services/<name>``: whole or not at all, and durable when this returns."""
+        self._put_bytes(self.base / "services" / name, data)
+
+    def read_service_file(self, name: str) -> bytes | None:
+        """What `write_service_file` kept, or None."""
+        try:
+            return bytes((self.base / "services" / name).read_bytes())
+        except FileNotFoundError:
+            return None
+
+    def remove_service_file(self, name: str) -> None:
+        """Forget what was kept under this name, if anything."""
+        (self.base / "services" / name).unlink(missing_ok=True)
+
     # Within ---------------------------------------------------------------------------------------------------------
 
     def _product(self, asset: str, scene: str) -> UPath:
@@ -201,15 +219,18 @@ class Store:
         return cache
 
     def _put_text(self, path: UPath, text: str) -> None:
+        self._put_bytes(path, text.encode())
+
+    def _put_bytes(self, path: UPath, data: bytes) -> None:
         if not self.is_local:
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_text(text)
+            path.write_bytes(data)
             return
         local = Path(str(path))
         local.parent.mkdir(parents=True, exist_ok=True)
         part = local.with_name(f"{local.name}.{uuid.uuid4().hex}")
-        with part.open("w") as file:
-            file.write(text)
+        with part.open("wb") as file:
+            file.write(data)
             file.flush()
             os.fsync(file.fileno())
         part.replace(local)

@@ -1,0 +1,74 @@
+"""An account of one scene in an empty store, with services that answer at once and keys in the environment."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fake_gemini import FakeGemini
+from fake_openai import FakeOpenAI
+
+from flymirage_core.service_settings import ServicesSettings
+from resources.services.account import Account
+from resources.store import Store
+
+FAST = {"starts_per_minute": 10_000, "at_once": 8, "tries": 4, "first_wait": 0.01, "longest_wait": 5.0}
+CANARY = "canary-4f1c9a7e55d2"
+"""Part of every key in these tests; it may appear nowhere."""
+KEYS = {
+    "OPENAI_API_KEY": f"sk-{CANARY}-openai",
+    "GEMINI_API_KEY": f"AIza-{CANARY}-gemini",
+    "DASHSCOPE_API_KEY": f"sk-{CANARY}-dashscope",
+    "WORLDLABS_API_KEY": f"wl-{CANARY}-marble",
+}
+
+
+class Script:
+    """What a fake model answers: the next of a list; the last one for ever."""
+
+    def __init__(self) -> None:
+        self.answers: list[Any] = []
+        self.seen: list[tuple[str, str, int]] = []
+
+    def __call__(self, system: str, user: str, pictures: int, schema: dict[str, Any] | None) -> Any:
+        self.seen.append((system, user, pictures))
+        return self.answers.pop(0) if len(self.answers) > 1 else self.answers[0]
+
+
+@pytest.fixture(autouse=True)
+def keys(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name, value in KEYS.items():
+        monkeypatch.setenv(name, value)
+
+
+@pytest.fixture
+def script() -> Script:
+    return Script()
+
+
+@pytest.fixture
+def openai(script: Script) -> Iterator[FakeOpenAI]:
+    with FakeOpenAI(script, KEYS["OPENAI_API_KEY"]) as fake:
+        yield fake
+
+
+@pytest.fixture
+def dashscope(script: Script) -> Iterator[FakeOpenAI]:
+    with FakeOpenAI(script, KEYS["DASHSCOPE_API_KEY"], "dashscope") as fake:
+        yield fake
+
+
+@pytest.fixture
+def gemini(script: Script) -> Iterator[FakeGemini]:
+    with FakeGemini(script, KEYS["GEMINI_API_KEY"]) as fake:
+        yield fake
+
+
+@pytest.fixture
+def account_of(tmp_path: Path) -> Callable[..., Account]:
+    """account_of(asset="description", reroll=0, **services settings)."""
+
+    def build(asset: str = "description", reroll: int = 0, scene: str = "s1", **settings: Any) -> Account:
+        return Account(Store(str(tmp_path / "store")), scene, asset, ServicesSettings(**settings), reroll)
+
+    return build
