@@ -5,13 +5,12 @@ inputs: nothing to do), provenance, the content hash as data version, numbers an
 """
 
 import base64
-import hashlib
 import importlib.metadata
 import inspect
-import json
 import time
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
@@ -19,9 +18,14 @@ from typing import Any, cast
 
 import dagster as dg
 import numpy as np
+import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
-from flymirage_core.errors import FlyMirageError
+from flymirage_assets.checks import check_results, check_specs
+from flymirage_assets.conditions import condition_of
+from flymirage_assets.failures import one_clear_sentence
+from flymirage_assets.hashing import hash_of, input_hash_of
+from flymirage_assets.pools import is_paid, pool_of
 from flymirage_core.pictures.encoding import jpeg_under
 from flymirage_core.product import Product
 from flymirage_core.progress import current_listener, listening
@@ -84,6 +88,7 @@ class ProductAsset:
     sections: tuple[str, ...]
     tools: tuple[str, ...]
     settings: Settings
+    returns: type[Product] | None = None  # the product's class: what was written is read back before it is published
 
     @property
     def section_values(self) -> dict[str, Any]:
@@ -92,7 +97,7 @@ class ProductAsset:
     @property
     def code_version(self) -> str:
         """The declared version and a hash of the settings it reads: what makes a product stale."""
-        return f"{self.version}-{_hash(self.section_values)[:8]}"
+        return f"{self.version}-{hash_of(self.section_values)[:8]}"
 
     def materialise(
         self, store: Store, scene: str, inputs: Mapping[str, Any], digests: dict[str, str], log: Callable[[str], None]
@@ -103,11 +108,14 @@ class ProductAsset:
         """
         tools = choose_tools(self.settings)
         tool_names = {port: getattr(tools, port).name for port in self.tools}
-        input_hash = _hash([self.code_version, digests, tool_names])
+        input_hash = input_hash_of(self.code_version, digests, tool_names)
         current = store.current(self.name, scene)
         if current is not None and current.input_hash == input_hash and store.is_whole(current):
             log(f"{self.name} of {scene}: inputs, code and settings are unchanged, nothing to do")
-            return Commit(current, preview=store.preview(current))
+            return Commit(current, preview=store.preview(current), returns=self.returns)
+        if (earlier := store.remembered(self.name, scene, input_hash)) is not None:
+            log(f"{self.name} of {scene}: the same inputs, code and settings as an earlier time, its product is back")
+            return Commit(earlier, preview=store.preview(earlier), reinstated=True, returns=self.returns)
         started = time.perf_counter()
         report = self._listener(log)
         report("", 0, 1)
@@ -119,7 +127,8 @@ class ProductAsset:
             preview = jpeg_under(self.draw(stage, product, **inputs), PREVIEW_BYTES)
         report("", 1, 1)
         seconds = time.perf_counter() - started
-        return Commit(self._record(scene, staged, input_hash, digests, tool_names, product, seconds), staged, preview)
+        record = self._record(scene, staged, input_hash, digests, tool_names, product, seconds)
+        return Commit(record, staged, preview, returns=self.returns)
 
     def _record(
         self,
@@ -179,7 +188,9 @@ def product_asset(
     def decorate(function: Compute) -> dg.AssetsDefinition:
         hints = inspect.get_annotations(function)
         upstream = {name: hint for name, hint in hints.items() if name not in ("stage", "return")}
-        stage = ProductAsset(function.__name__, function, draw, version, tuple(sections), tuple(tools), settings)
+        stage = ProductAsset(
+            function.__name__, function, draw, version, tuple(sections), tuple(tools), settings, hints["return"]
+        )
 
         @dg.asset(
             name=stage.name,
@@ -187,18 +198,29 @@ def product_asset(
             partitions_def=scenes,
             group_name=group,
             code_version=stage.code_version,
-            kinds=set(kinds),
+            kinds={"python", *kinds},
+            owners=[f"team:{group}"],
+            pool=pool_of(settings, tools),
+            retry_policy=retry_policy(settings),
+            automation_condition=condition_of(settings, tools),
+            check_specs=check_specs(function.__name__),
             required_resource_keys={"io_manager"},
             ins={name: dg.AssetIn(dagster_type=_dagster_type(hint)) for name, hint in upstream.items()},
-            metadata={"product": hints["return"].__name__},
+            metadata={
+                "product": hints["return"].__name__,
+                "reads_settings": stage.section_values,
+                "uses_tools": list(tools),
+                "costs_money": is_paid(settings, tools),
+                **code_reference(function),
+            },
         )
-        def materialise(context: dg.AssetExecutionContext, **inputs: Any) -> Any:
+        def materialise(context: dg.AssetExecutionContext, **inputs: Any):  # type: ignore[no-untyped-def]
             store = cast(ProductIOManager, context.resources.io_manager).store
             with one_clear_sentence():
                 scene = check_scene_key(context.partition_key)
                 digests = upstream_digests(store, scene, upstream)
                 commit = stage.materialise(store, scene, inputs, digests, context.log.info)
-            return materialize_result(commit, store)
+            yield materialize_result(commit, store)  # a returned one needs an annotation, which would hide its value
 
         return materialise
 
@@ -210,24 +232,37 @@ def upstream_digests(store: Store, scene: str, upstream: Iterable[str]) -> dict[
     records = {asset: store.current(asset, scene) for asset in upstream}
     if not records:
         origin = store.origin(scene)
-        return {"origin": "" if origin is None else _hash(origin.model_dump(mode="json"))}
+        return {"origin": "" if origin is None else hash_of(origin.model_dump(mode="json"))}
     return {asset: record.digest for asset, record in records.items() if record is not None}
 
 
-class one_clear_sentence:  # noqa: N801 - reads as what it does at the place of use
-    """Turns the project's own errors into a Dagster failure that is not retried: a retry would meet the same input."""
-
-    def __enter__(self) -> None:
+def retry_policy(settings: Settings) -> dg.RetryPolicy | None:
+    """Again after a transient failure, later and later; what is permanent says so itself (`one_clear_sentence`)."""
+    if settings.operation.step_retries == 0:
         return None
+    return dg.RetryPolicy(
+        max_retries=settings.operation.step_retries,
+        delay=settings.operation.retry_delay,
+        backoff=dg.Backoff.EXPONENTIAL,
+        jitter=dg.Jitter.PLUS_MINUS,
+    )
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
-        if isinstance(error, FlyMirageError):
-            raise dg.Failure(description=str(error), allow_retries=False) from error
+
+def code_reference(function: Compute) -> dict[str, Any]:
+    """Where the stage's own function stands: the UI opens it in an editor."""
+    code = inspect.unwrap(function).__code__
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", dg.BetaWarning)
+        place = dg.LocalFileCodeReference(file_path=code.co_filename, line_number=code.co_firstlineno)
+        return {"dagster/code_references": dg.CodeReferencesMetadataValue(code_references=[place])}
 
 
 def materialize_result(commit: Commit, store: Store) -> Any:
     """The event that Dagster shows: numbers, the folder, a picture, and the content hash as data version."""
     record = commit.record
+    results = check_results(commit, store)
+    if not all(result.passed for result in results if result.severity == dg.AssetCheckSeverity.ERROR):
+        commit = replace(commit, staged=None)  # corrupt: never published
     folder = store.base / "products" / record.asset / record.scene / record.digest
     metadata: dict[str, Any] = {
         **record.summary,
@@ -240,14 +275,24 @@ def materialize_result(commit: Commit, store: Store) -> Any:
     if commit.preview is not None:
         picture = base64.b64encode(commit.preview).decode()
         metadata["picture"] = dg.MetadataValue.md(f"![picture](data:image/jpeg;base64,{picture})")
-    return dg.MaterializeResult(value=commit, metadata=metadata, data_version=dg.DataVersion(record.digest))
+    schema = column_schema(commit, store)
+    if schema is not None:
+        metadata["dagster/column_schema"] = schema
+    return dg.MaterializeResult(
+        value=commit, metadata=metadata, data_version=dg.DataVersion(record.digest), check_results=results
+    )
+
+
+def column_schema(commit: Commit, store: Store) -> dg.TableSchema | None:
+    """Columns of the product's largest table, if it has one."""
+    tables = {name: entry.size for name, entry in commit.record.files.items() if name.endswith(".parquet")}
+    if not tables or commit.staged is None:
+        return None
+    schema = pq.read_schema(commit.staged.folder / max(tables, key=lambda name: tables[name]))
+    return dg.TableSchema(columns=[dg.TableColumn(name=field.name, type=str(field.type)) for field in schema])
 
 
 @cache
 def _dagster_type(kind: type) -> dg.DagsterType:
     """One Dagster type for each product class: their names must be unique."""
     return dg.PythonObjectDagsterType(kind)
-
-
-def _hash(value: Any) -> str:
-    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()[:32]

@@ -19,6 +19,8 @@ class Commit:
     record: ProductRecord
     staged: Staged | None = None
     preview: bytes | None = None
+    reinstated: bool = False  # the record is of an earlier product whose files are still there
+    returns: Any = None  # the product's class, if what is staged shall be read back before it is published
 
 
 class ProductIOManager(dg.ConfigurableIOManager):
@@ -35,6 +37,8 @@ class ProductIOManager(dg.ConfigurableIOManager):
 
     def handle_output(self, context: dg.OutputContext, obj: Commit) -> None:
         if obj.staged is None:
+            if obj.reinstated:
+                self.store.reinstate(obj.record)
             return
         started = time.perf_counter()
         self.store.publish(obj.staged, obj.record, obj.preview)

@@ -6,6 +6,7 @@ Layout under the base (a local path or any fsspec URL)::
     imports/<scene>/<file>                     the world file a user brought
     products/<asset>/<scene>/<digest>/...      files, named by their content
     products/<asset>/<scene>/product.json      written last: which digest is current, and its provenance
+    products/<asset>/<scene>/made/<input hash>.json   its earlier records: the way back to old settings is free
     services/<scene>/...                       answers that were paid for, and journals of paid requests
     staging/                                   work in progress; never read, swept when old
 
@@ -49,7 +50,8 @@ class Store:
     """Products and scenes under one base. Safe for several processes: the last complete commit wins."""
 
     def __init__(self, base: str) -> None:
-        self.base = UPath(base) if "://" in base else UPath(os.path.abspath(base))  # noqa: PTH100
+        remote = "://" in base  # listings are not cached: other machines write to the same place
+        self.base = UPath(base, use_listings_cache=False) if remote else UPath(os.path.abspath(base))  # noqa: PTH100
         self.is_local = self.base.protocol in ("", "file", "local")
 
     # Scenes ---------------------------------------------------------------------------------------------------------
@@ -107,15 +109,10 @@ class Store:
         record = self.current(asset, scene)
         if record is None:
             raise ProductError(f"scene {scene!r} has no product {asset!r} yet: materialise it first")
-        folder = self._local(self._product(asset, scene) / record.digest, list(record.files))
-        for name, entry in record.files.items():
-            path = folder / name
-            if not path.exists() or path.stat().st_size != entry.size:
-                raise ProductError(
-                    f"{path} is missing or torn (expected {entry.size} bytes): delete {path.parent} and "
-                    f"materialise {asset!r} of scene {scene!r} again"
-                )
-        return folder
+        problem = self._what_is_torn(record)
+        if problem:
+            raise ProductError(f"{problem}: run `flymirage make {scene}`, which makes {asset!r} again")
+        return self._local(self._product(asset, scene) / record.digest, list(record.files))
 
     def preview(self, record: ProductRecord) -> bytes | None:
         """The picture kept beside a product, if there is one."""
@@ -124,11 +121,20 @@ class Store:
 
     def is_whole(self, record: ProductRecord) -> bool:
         """True if every file of the record is there with its size."""
+        return not self._what_is_torn(record)
+
+    def remembered(self, asset: str, scene: str, input_hash: str) -> ProductRecord | None:
+        """The record of an earlier product with this input hash whose files are still there, or None."""
+        path = self._product(asset, scene) / "made" / f"{input_hash}.json"
         try:
-            self.folder(record.asset, record.scene)
-        except ProductError:
-            return False
-        return True
+            record = parse_record(path.read_text(), str(path))
+        except (FileNotFoundError, ProductError):
+            return None
+        return record if self.is_whole(record) else None
+
+    def reinstate(self, record: ProductRecord) -> None:
+        """Make an earlier product, whose files are still there, the current one again."""
+        self._put_text(self._product(record.asset, record.scene) / "product.json", _as_text(record))
 
     def stage(self, product: Product) -> Staged:
         """Write ``product`` to a private folder and hash it. Nobody sees it until `publish`."""
@@ -155,7 +161,8 @@ class Store:
             for name in names:
                 _upload(staged.folder / name, target / record.digest / name)
         fault_point("files committed")
-        self._put_text(target / "product.json", record.model_dump_json(indent=2) + "\n")
+        self._put_text(target / "made" / f"{record.input_hash}.json", _as_text(record))
+        self._put_text(target / "product.json", _as_text(record))
         fault_point("pointer committed")
         shutil.rmtree(staged.folder.parent, ignore_errors=True)
 
@@ -186,6 +193,17 @@ class Store:
         (self.base / "services" / name).unlink(missing_ok=True)
 
     # Within ---------------------------------------------------------------------------------------------------------
+
+    def _what_is_torn(self, record: ProductRecord) -> str:
+        folder = self._product(record.asset, record.scene) / record.digest
+        for name, entry in record.files.items():
+            try:
+                size = (folder / name).stat().st_size
+            except FileNotFoundError:
+                size = 0
+            if size != entry.size:
+                return f"{folder / name} is missing or torn (expected {entry.size} bytes, found {size})"
+        return ""
 
     def _product(self, asset: str, scene: str) -> UPath:
         if scene != ALL_SCENES:
@@ -260,6 +278,10 @@ def open_store(base: str) -> Store:
                 f"the store {base!r} cannot be made ({error.strerror}): set FLYMIRAGE_STORE to a writable folder"
             ) from error
     return store
+
+
+def _as_text(record: ProductRecord) -> str:
+    return record.model_dump_json(indent=2) + "\n"
 
 
 def sha256_of(path: Path) -> str:

@@ -3,11 +3,11 @@
 from rich.console import Console
 from rich.markup import escape
 
-from flymirage_assets.cli import data, doctor, growth, worlds
+from flymirage_assets.cli import data, doctor, growth, models, worlds
 from flymirage_assets.cli.app import app
 from flymirage_core.errors import FlyMirageError
 
-__all__ = ["app", "data", "doctor", "growth", "main", "worlds"]
+__all__ = ["app", "data", "doctor", "growth", "main", "models", "worlds"]
 
 
 def main() -> None:

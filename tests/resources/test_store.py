@@ -98,7 +98,7 @@ def test_a_torn_file_is_refused_and_a_new_commit_mends_it(tmp_path: Path) -> Non
     torn.unlink()  # the file may be linked elsewhere: never write into it
     torn.write_text("hel")
     assert not store.is_whole(record)
-    with pytest.raises(ProductError, match=r"note\.txt is missing or torn \(expected 5 bytes\)"):
+    with pytest.raises(ProductError, match=r"note\.txt is missing or torn \(expected 5 bytes, found 3\)"):
         store.folder("notes", "flat")
     commit(store, "hello")
     assert (store.folder("notes", "flat") / "note.txt").read_text() == "hello"
