@@ -30,6 +30,11 @@ class SceneOrigin(Document):
     up: Up = "auto"
     scale: float | None = None  # metres per file unit; None = the file is in metres
 
+    @property
+    def place(self) -> tuple[str, str] | None:
+        """(category, subcategory) that growth chose for a generated scene."""
+        return (self.category, self.subcategory) if self.kind == "generated" and self.category else None
+
     @field_validator("scene")
     @classmethod
     def _key(cls, value: str) -> str:

@@ -19,7 +19,7 @@ def world_generation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         """The scene's structured specification and prose, from a taxonomy pick; of an import, its provenance."""
         if stage.origin.kind == "imported":
             return describe_import(stage.origin)
-        return stage.tools.scene_writer.describe(stage.scene)
+        return stage.tools.scene_writer.describe(stage.scene, stage.origin.place)
 
     @product_asset(
         version="1",

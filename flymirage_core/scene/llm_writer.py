@@ -36,11 +36,11 @@ class ModelSceneWriter:
     def name(self) -> str:
         return f"{self.model.name} (prompt {self.template.fingerprint(SceneDesign)})"
 
-    def describe(self, scene_key: str) -> SceneDescription:
+    def describe(self, scene_key: str, place: tuple[str, str] | None = None) -> SceneDescription:
         """The description of a scene; raises `SceneKeyError`, `ModerationError` if every seed was refused, and other
         `ServiceError`s."""
         check_scene_key(scene_key)
-        category, subcategory = self.taxonomy.pick(scene_key, self.counts_so_far)
+        category, subcategory = place or self.taxonomy.pick(scene_key, self.counts_so_far)
         refusals: list[str] = []
         for attempt in range(self.reroll, self.reroll + self.rerolls + 1):
             seed = int(rng(scene_key, "design", attempt).integers(SEEDS))

@@ -24,11 +24,14 @@ WALL_SHARE = 0.2
 
 
 class SceneWriter(Protocol):
-    """Describes the scene of a key: what kind of place, and what is in it (paper section III-A)."""
+    """Describes the scene of a key: what kind of place, and what is in it (paper section III-A).
+
+    ``place`` is (category, subcategory) where growth chose it for balance; else the writer picks by the key.
+    """
 
     name: str
 
-    def describe(self, scene_key: str) -> SceneDescription: ...
+    def describe(self, scene_key: str, place: tuple[str, str] | None = None) -> SceneDescription: ...
 
 
 class OfflineSceneWriter:
@@ -42,10 +45,10 @@ class OfflineSceneWriter:
         self.taxonomy = taxonomy or standard_taxonomy()
         self.counts_so_far = dict(counts_so_far or {})
 
-    def describe(self, scene_key: str) -> SceneDescription:
+    def describe(self, scene_key: str, place: tuple[str, str] | None = None) -> SceneDescription:
         """The description of a scene; raises `SceneKeyError` for a key that may not name one."""
         check_scene_key(scene_key)
-        category, subcategory = self.taxonomy.pick(scene_key, self.counts_so_far)
+        category, subcategory = place or self.taxonomy.pick(scene_key, self.counts_so_far)
         generator = rng(scene_key, "description")
         data = _furnishing()
         look = data["categories"].get(category) or _any(generator, list(data["categories"].values()))
