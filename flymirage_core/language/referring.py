@@ -1,283 +1,245 @@
-"""What a prompt means, as a structure, and the resolver that reads it back against the boxes.
+"""Referring expressions: the shortest meanings of each kind that certainly pick the target and nothing else.
 
-A `Meaning` is a list of terms that all hold of the object meant: noun, colour, shape, relation to landmarks, side of
-the drone; at most one superlative picks among what the others leave. Wording is `wording.py`'s business.
+Candidates are tried from the plainest to the most laboured; the resolver decides. After R. Dale and E. Reiter,
+"Computational interpretations of the Gricean maxims in the generation of referring expressions", Cognitive Science
+19 (1995).
 """
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from enum import Enum
+from collections.abc import Iterable, Iterator
+from itertools import combinations, islice, product
 
 import numpy as np
 
 from flymirage_core.annotation.boxes import ObjectBox
-from flymirage_core.language.scene_relations import (
-    Relation,
-    Side,
-    StartPose,
-    Truth,
-    at_least,
-    at_most,
-    between,
-    on_side,
-    outline_gap,
-    related,
+from flymirage_core.language.looks import shaped
+from flymirage_core.language.meaning import (
+    UNNAMED,
+    Between,
+    Colour,
+    Located,
+    Material,
+    Meaning,
+    Most,
+    Noun,
+    Related,
+    Shape,
+    Shaped,
+    Size,
+    Sized,
+    Superlative,
+    Term,
+    egocentric,
 )
+from flymirage_core.language.nouns import is_generic
+from flymirage_core.language.prompts import PromptKind
+from flymirage_core.language.resolver import Resolver
+from flymirage_core.language.scene_relations import Relation, Side, Truth, outline_gap
 
-UNNAMED = "object"
-"""The label of things for which nothing better is known; as a word it may mean anything."""
+NEAREST_LANDMARKS = 8
+"""How many landmarks are tried for a target, most sensible first."""
+LANDMARK_REACH = 2.5
+"""Metres between outlines beyond which nothing is a landmark."""
+LEAST_LANDMARK = 0.3
+"""Metres: a thing whose longest side is shorter is too small to steer by."""
+NAMELESS_COST = 1.5
+"""Metres by which a landmark without a name must be nearer to be preferred."""
+VARIETY = 3
+"""Among this many best unambiguous phrases one is drawn, so that not all prompts use the same relation."""
+MOST_TRIED = 600
+"""Candidates of one kind, after which nothing better is hoped for."""
+SEVERAL = 2
+"""Fewer prompts than this are filled up with a second one of a kind."""
 
-SYNONYMS = (
-    frozenset({"sofa", "couch", "settee", "loveseat"}),
-    frozenset({"armchair", "chair", "seat"}),
-    frozenset({"stool", "ottoman", "pouf", "footstool"}),
-    frozenset({"cabinet", "cupboard", "wardrobe", "closet", "armoire", "locker"}),
-    frozenset({"bookshelf", "bookcase", "shelf", "shelves", "shelving", "rack"}),
-    frozenset({"dresser", "drawers", "sideboard", "credenza"}),
-    frozenset({"lamp", "light", "lantern"}),
-    frozenset({"picture", "painting", "poster", "artwork", "photo"}),
-    frozenset({"plant", "houseplant", "shrub", "bush"}),
-    frozenset({"rug", "carpet", "mat"}),
-    frozenset({"tv", "television", "monitor", "screen", "display"}),
-    frozenset({"bin", "can", "basket", "bucket"}),
-    frozenset({"box", "crate", "carton", "chest"}),
-    frozenset({"pillow", "cushion"}),
-    frozenset({"counter", "bar", "countertop"}),
+BY_SIZE = (
+    Superlative.LARGEST,
+    Superlative.TALLEST,
+    Superlative.SMALLEST,
+    Superlative.LONGEST,
+    Superlative.SHORTEST,
+    Superlative.HIGHEST,
+    Superlative.LOWEST,
 )
-"""Words that people use for one another: a prompt with one of them may be read as any of its set."""
-
-VAGUE = {
-    "table": {"desk", "counter", "workbench", "nightstand"},
-    "seat": {"chair", "armchair", "stool", "pouf", "ottoman", "bench", "sofa"},
-    "cabinet": {"bookshelf", "wardrobe", "sideboard", "dresser", "nightstand", "tv stand", "locker"},
-    "container": {"box", "basket", "bin", "waste bin", "crate", "barrel", "suitcase"},
-    "lamp": {"ceiling light", "light", "lantern"},
-    "picture": {"poster", "painting", "mirror"},
-    "appliance": {"printer", "microwave", "refrigerator", "machine"},
-    "machine": {"printer", "gas cylinder"},
-}
-"""Family names: a thing called by one may be any of its kinds, and each of them may be called by it."""
-
-CONFUSABLE_COLOURS = (
-    frozenset({"white", "beige", "cream", "light grey"}),
-    frozenset({"black", "dark grey", "dark brown", "dark blue"}),
-    frozenset({"grey", "silver"}),
-    frozenset({"brown", "light brown", "beige", "tan", "dark orange", "dark yellow", "olive"}),
-    frozenset({"beige", "cream", "light orange", "light yellow"}),
-    frozenset({"red", "pink", "dark pink", "light red"}),
-    frozenset({"purple", "pink"}),
-    frozenset({"red", "orange"}),
-    frozenset({"orange", "yellow", "gold"}),
-    frozenset({"blue", "purple"}),
-    frozenset({"blue", "cyan", "turquoise", "teal"}),
-    frozenset({"green", "teal", "turquoise", "olive"}),
+BY_PLACE = (Superlative.NEAREST, Superlative.LEFTMOST, Superlative.RIGHTMOST, Superlative.FARTHEST)
+RELATIONS_BY_SENSE = (
+    Relation.ON,
+    Relation.UNDER,
+    Relation.ABOVE,
+    Relation.BELOW,
+    Relation.NEXT_TO,
+    Relation.IN_FRONT_OF,
+    Relation.BEHIND,
+    Relation.LEFT_OF,
+    Relation.RIGHT_OF,
+    Relation.NEAR,
 )
-"""Colour names that light and eye do not keep apart."""
+"""What holds from everywhere first, the vague last."""
 
-SUPERLATIVE_MARGIN = (0.2, 0.3)
-"""Share, and metres for distances, by which the winner must beat the next best."""
-
-
-class Shape(Enum):
-    """Proportions that one sees on a single object."""
-
-    TALL = "tall"
-    LOW = "low"
-    LONG = "long"
+Terms = tuple[Term, ...]
 
 
-class Superlative(Enum):
-    LARGEST = "largest"
-    SMALLEST = "smallest"
-    TALLEST = "tallest"
-    NEAREST = "nearest"  # to the drone at its start
-    CLOSEST_TO = "closest to"  # a landmark
+def expressions(
+    resolver: Resolver, target_id: int, generator: np.random.Generator
+) -> Iterator[tuple[PromptKind, Meaning]]:
+    """Up to three unambiguous meanings, one for each kind of prompt in the paper's order; where only one kind can be
+    had, two of that kind."""
+    target = next(box for box in resolver.boxes if box.object_id == target_id)
+    description = _Description(resolver, target)
+    found: list[tuple[PromptKind, Meaning]] = []
+    kinds: tuple[tuple[PromptKind, Iterable[Meaning], int], ...] = (
+        ("object_centred", description.object_centred(), 1),
+        ("relative", description.relative(), VARIETY),
+        ("appearance", description.appearance(), 1),
+    )
+    spare: list[tuple[PromptKind, Meaning]] = []
+    for kind, candidates, variety in kinds:
+        fresh = (m for m in candidates if not any(_same(m, other) for _, other in found))
+        sure = list(
+            islice((m for m in islice(fresh, MOST_TRIED) if resolver.picks(m, target_id)), max(variety, SEVERAL))
+        )
+        if sure:
+            chosen = int(generator.integers(min(variety, len(sure))))
+            found.append((kind, sure.pop(chosen)))
+            spare += [(kind, m) for m in sure]
+    others = [(kind, m) for kind, m in spare if not any(_same(m, other) for _, other in found)]
+    yield from found + others[: max(0, SEVERAL - len(found))]
 
 
-@dataclass(frozen=True)
-class Noun:
-    word: str
+def lasting_expression(resolver: Resolver, target_id: int) -> Meaning | None:
+    """The plainest sure meaning that does not depend on where the drone is: for one goal among several."""
+    target = next(box for box in resolver.boxes if box.object_id == target_id)
+    description = _Description(resolver, target)
+    for candidates in (description.object_centred(), description.appearance(), description.relative()):
+        lasting = (m for m in candidates if not any(egocentric(t) for t in m.terms))
+        sure = next((m for m in islice(lasting, MOST_TRIED) if resolver.picks(m, target_id)), None)
+        if sure is not None:
+            return sure
+    return None
 
 
-@dataclass(frozen=True)
-class Colour:
-    name: str
+def unique_landmarks(meaning: Meaning, resolver: Resolver) -> frozenset[Meaning]:
+    """The landmarks in ``meaning`` that are one thing only, and so take "the"."""
+    return frozenset(m for m in meaning.landmarks if np.count_nonzero(resolver.truths(m)) == 1)
 
 
-@dataclass(frozen=True)
-class Shaped:
-    shape: Shape
+class _Description:
+    """All that is certainly true of one target, and the ways to put it together, plainest first."""
+
+    def __init__(self, resolver: Resolver, target: ObjectBox) -> None:
+        self.resolver, self.target = resolver, target
+        self.nameless = is_generic(target.label)
+        self.noun = Noun(UNNAMED if self.nameless else target.label)
+        self.sides: list[Term] = [s for side in Side if self._holds(s := Located(side))]
+        self.looks = _looks(target)
+        self._place_list: list[Term] | None = None
+
+    def object_centred(self) -> Iterator[Meaning]:
+        """The noun, refined by size or by where the drone sees it; a thing without name needs a shape at least."""
+        kernels: list[Terms] = [(s, self.noun) for s in self._shapes()] if self.nameless else [(self.noun,)]
+        sizes: list[Term] = [*(Most(by) for by in BY_SIZE), *(Sized(size) for size in Size)]
+        ranks: list[Term] = [Most(by) for by in BY_PLACE]
+        ranks += [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
+        yield from (Meaning(kernel) for kernel in kernels)
+        yield from _with(kernels, sizes)
+        yield from _with(kernels, self.sides)
+        yield from _with(kernels, ranks)
+        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in sizes)
+        if self.nameless:
+            yield from _with([(self.noun,)], sizes[:3])
+
+    def relative(self) -> Iterator[Meaning]:
+        """The noun with a relation to the most sensible landmarks; refined by looks, a side, or a second relation."""
+        kernels: list[Terms] = [(self.noun,), *((look, self.noun) for look in self.looks[:3])]
+        for kernel in kernels:
+            yield from _with([kernel], self._places())
+        yield from _with(kernels, [Most(Superlative.CLOSEST_TO, m) for m, _ in self._landmarks()])
+        for kernel in kernels:
+            yield from (Meaning((*kernel, side, place)) for side in self.sides for place in self._places())
+        sizes: list[Term] = [*(Most(by) for by in (*BY_SIZE, *BY_PLACE)), *(Sized(size) for size in Size)]
+        yield from (Meaning((size, *k, p)) for k in kernels[:2] for p in self._places()[:8] for size in sizes)
+        for kernel in kernels:
+            pairs = combinations(self._places()[:10], 2)
+            yield from (Meaning((*kernel, one, other)) for one, other in pairs if _landmarks_differ(one, other))
+
+    def appearance(self) -> Iterator[Meaning]:
+        """Always something seen on the thing: colour, material, shape, then size among its like, or a side as well."""
+        pairs = [pair for pair in combinations(self.looks, 2) if type(pair[0]) is not type(pair[1])]
+        looks: list[Terms] = [*((look,) for look in self.looks), *pairs]
+        kernels: list[Terms] = [(*look, self.noun) for look in looks]
+        sizes: list[Term] = [*(Most(by) for by in BY_SIZE), *(Sized(size) for size in Size)]
+        yield from (Meaning(kernel) for kernel in kernels)
+        yield from _with(kernels, sizes)
+        yield from _with(kernels, self.sides)
+        yield from _with(kernels, [Most(by) for by in BY_PLACE])
+        if not self.nameless:
+            yield from _with([(self.noun,)], sizes[:3])
+        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in sizes)
+        ranks: list[Term] = [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
+        yield from _with(kernels, ranks)
+
+    def _shapes(self) -> list[Term]:
+        return [look for look in self.looks if isinstance(look, Shaped)]
+
+    def _holds(self, term: Term) -> bool:
+        index = self.resolver.boxes.index(self.target)
+        return bool(self.resolver.term_truths(term)[index] == Truth.YES)
+
+    def _places(self) -> list[Term]:
+        """True relations of the target to its landmarks, most sensible first."""
+        if self._place_list is None:
+            marks = self._landmarks()
+            related: list[Term] = [Related(r, m) for r, (m, _) in product(RELATIONS_BY_SENSE, marks)]
+            sure = [m for m, box in marks if self.resolver.picks(m, box.object_id)]
+            middle: list[Term] = [Between(one, other) for one, other in combinations(sure[:5], 2)]
+            at = RELATIONS_BY_SENSE.index(Relation.IN_FRONT_OF) * len(marks)
+            self._place_list = [t for t in (*related[:at], *middle, *related[at:]) if self._holds(t)]
+        return self._place_list
+
+    def _landmarks(self) -> list[tuple[Meaning, ObjectBox]]:
+        """Things of another kind that are near and big enough, most sensible first, by the shortest sure phrase.
+
+        A thing with a name that no phrase singles out is "a" such thing; one without a name is then no landmark.
+        """
+        near: list[tuple[float, int, ObjectBox]] = []
+        for box in self.resolver.boxes:
+            gap = outline_gap(box, self.target)
+            if box is self.target or gap > LANDMARK_REACH or max(box.size) < LEAST_LANDMARK:
+                continue
+            if self.nameless or box.label != self.target.label:
+                cost = gap + 0.5 / max(box.size) + (NAMELESS_COST if is_generic(box.label) else 0.0)
+                near.append((cost, box.object_id, box))
+        near.sort(key=lambda entry: entry[:2])
+        called = ((_landmark_phrase(box, self.resolver), box) for _, _, box in near)
+        return list(islice(((m, box) for m, box in called if m is not None), NEAREST_LANDMARKS))
 
 
-@dataclass(frozen=True)
-class Located:
-    """On a side of the drone at its start."""
-
-    side: Side
-
-
-@dataclass(frozen=True)
-class Related:
-    relation: Relation
-    landmark: "Meaning"
+def _looks(box: ObjectBox) -> list[Term]:
+    """What is seen on the box itself: colour, material, shapes."""
+    looks: list[Term] = [Colour(box.colour)] if box.colour else []
+    looks += [Material(box.material)] if box.material else []
+    shapes = [shape for shape in Shape if shaped(shape, box) is Truth.YES]
+    if Shape.SLIM in shapes and Shape.TALL in shapes:
+        shapes.remove(Shape.SLIM)
+    return looks + [Shaped(shape) for shape in shapes]
 
 
-@dataclass(frozen=True)
-class Between:
-    one: "Meaning"
-    other: "Meaning"
+def _landmark_phrase(box: ObjectBox, resolver: Resolver) -> Meaning | None:
+    nameless = is_generic(box.label)
+    noun: Term = Noun(UNNAMED if nameless else box.label)
+    looks = _looks(box)
+    refined: list[Terms] = [(noun,), *((noun, look) for look in looks), *((noun, *p) for p in combinations(looks, 2))]
+    refined += [(noun, Most(by)) for by in BY_SIZE[:3]]
+    sure = next((m for m in map(Meaning, refined) if resolver.picks(m, box.object_id)), None)
+    return sure or (None if nameless else Meaning((noun,)))
 
 
-@dataclass(frozen=True)
-class Most:
-    by: Superlative
-    landmark: "Meaning | None" = None  # of CLOSEST_TO
+def _with(kernels: Iterable[Terms], refinements: Iterable[Term]) -> Iterator[Meaning]:
+    refined = list(refinements)
+    return (Meaning((*kernel, term)) for kernel in kernels for term in refined)
 
 
-Term = Noun | Colour | Shaped | Located | Related | Between | Most
+def _landmarks_differ(one: Term, other: Term) -> bool:
+    return not set(Meaning((one,)).landmarks) & set(Meaning((other,)).landmarks)
 
 
-@dataclass(frozen=True)
-class Meaning:
-    """The object of which all terms hold."""
-
-    terms: tuple[Term, ...]
-
-
-Predicate = Callable[[ObjectBox], Truth]
-
-
-def resolve(meaning: Meaning, boxes: Iterable[ObjectBox], start: StartPose) -> frozenset[int]:
-    """Ids of all objects that ``meaning`` may be read to mean, borderline cases included."""
-    return frozenset(readings(meaning, tuple(boxes), start))
-
-
-def picks(meaning: Meaning, boxes: Iterable[ObjectBox], start: StartPose, target_id: int) -> bool:
-    """Whether ``meaning`` is certainly true of the target and certainly false of every other object."""
-    return readings(meaning, tuple(boxes), start) == {target_id: Truth.YES}
-
-
-def readings(meaning: Meaning, boxes: tuple[ObjectBox, ...], start: StartPose) -> dict[int, Truth]:
-    """How ``meaning`` stands of each object of which it may be true."""
-    truths = {box.object_id: (box, Truth.YES) for box in boxes}
-    for term in sorted(meaning.terms, key=lambda t: isinstance(t, Most)):
-        if isinstance(term, Most):
-            truths = _superlative(term, truths, boxes, start)
-            continue
-        holds = _predicate(term, boxes, start)
-        judged = ((box, min(truth, holds(box))) for box, truth in truths.values())
-        truths = {box.object_id: (box, truth) for box, truth in judged if truth > Truth.NO}
-    return {object_id: truth for object_id, (_, truth) in truths.items()}
-
-
-def named(word: str, label: str) -> Truth:
-    """Whether a thing with this label is meant by ``word``: certainly by its own label, maybe by kin of it.
-
-    "chair" may mean an "office chair" and, labels being what they are, "office chair" may mean a "chair".
-    """
-    if word == label:
-        return Truth.YES
-    if word == UNNAMED or label.endswith(" " + word) or word.endswith(" " + label):
-        return Truth.MAYBE
-    head = label.split()[-1]
-    if word in VAGUE.get(label, ()) or label in VAGUE.get(word, ()):
-        return Truth.MAYBE
-    return Truth.MAYBE if any(word in kin and (label in kin or head in kin) for kin in SYNONYMS) else Truth.NO
-
-
-def coloured(name: str, seen: str) -> Truth:
-    """Whether ``name`` describes a thing of the ``seen`` colour; an unmeasured colour may be any."""
-    if name == seen:
-        return Truth.YES
-    if not seen:
-        return Truth.MAYBE
-    if any(name in kin and seen in kin for kin in CONFUSABLE_COLOURS):
-        return Truth.MAYBE
-    opposite = {name.split()[0], seen.split()[0]} == {"dark", "light"}
-    return Truth.MAYBE if name.split()[-1] == seen.split()[-1] and not opposite else Truth.NO
-
-
-def shaped(shape: Shape, box: ObjectBox) -> Truth:
-    """From the proportions of the box: height, longer and shorter side."""
-    longer, shorter, height = max(box.size[:2]), min(box.size[:2]), box.size[2]
-    match shape:
-        case Shape.TALL:
-            return at_least(height / longer, (1.8, 1.3))
-        case Shape.LOW:
-            return min(at_most(height / longer, (0.45, 0.65)), at_most(height, (0.6, 0.8)))
-        case Shape.LONG:
-            return min(at_least(longer / shorter, (2.5, 1.8)), at_least(longer / height, (1.5, 1.1)))
-
-
-def _predicate(
-    term: Noun | Colour | Shaped | Located | Related | Between, boxes: tuple[ObjectBox, ...], start: StartPose
-) -> Predicate:
-    match term:
-        case Noun(word):
-            return lambda box: named(word, box.label)
-        case Colour(name):
-            return lambda box: coloured(name, box.colour)
-        case Shaped(shape):
-            return lambda box: shaped(shape, box)
-        case Located(side):
-            return lambda box: on_side(side, box, start)
-        case Related(relation, landmark):
-            marks = _landmarks(landmark, boxes, start)
-            return lambda box: max(
-                (min(truth, related(relation, box, mark, start)) for mark, truth in marks if mark is not box),
-                default=Truth.NO,
-            )
-        case Between(one, other):
-            ones, others = _landmarks(one, boxes, start), _landmarks(other, boxes, start)
-            return lambda box: max(
-                (
-                    min(truth_a, truth_b, between(box, a, b))
-                    for a, truth_a in ones
-                    for b, truth_b in others
-                    if a is not b and box is not a and box is not b
-                ),
-                default=Truth.NO,
-            )
-
-
-def _landmarks(meaning: Meaning, boxes: tuple[ObjectBox, ...], start: StartPose) -> list[tuple[ObjectBox, Truth]]:
-    truths = readings(meaning, boxes, start)
-    return [(box, truths[box.object_id]) for box in boxes if box.object_id in truths]
-
-
-def _superlative(
-    term: Most, truths: dict[int, tuple[ObjectBox, Truth]], boxes: tuple[ObjectBox, ...], start: StartPose
-) -> dict[int, tuple[ObjectBox, Truth]]:
-    """Those that may be the most: the best of all candidates, and whatever comes within the margin of it.
-
-    Nothing is certain where there is nothing to compare, or where the landmark itself is in doubt.
-    """
-    doubtful = {object_id: (box, min(truth, Truth.MAYBE)) for object_id, (box, truth) in truths.items()}
-    if term.landmark and len(readings(term.landmark, boxes, start)) != 1:
-        return doubtful
-    costs = {object_id: _cost(term, box, boxes, start) for object_id, (box, _) in truths.items()}
-    if not costs:
-        return {}
-    best = min(costs.values())
-    margin = SUPERLATIVE_MARGIN[1] if term.by in (Superlative.NEAREST, Superlative.CLOSEST_TO) else 0.0
-    limit = best + abs(best) * SUPERLATIVE_MARGIN[0] + margin
-    near = [object_id for object_id, cost in costs.items() if cost <= limit]
-    chosen = truths if len(near) == 1 and len(costs) > 1 else doubtful
-    return {object_id: chosen[object_id] for object_id in near}
-
-
-def _cost(term: Most, box: ObjectBox, boxes: tuple[ObjectBox, ...], start: StartPose) -> float:
-    """Less is more: metres, or minus metres (of height), or minus the cube root of the volume."""
-    volume = float(np.cbrt(box.size[0] * box.size[1] * box.size[2]))
-    match term.by:
-        case Superlative.LARGEST:
-            return -volume
-        case Superlative.SMALLEST:
-            return volume
-        case Superlative.TALLEST:
-            return -box.size[2]
-        case Superlative.NEAREST:
-            return start.range(box)
-        case Superlative.CLOSEST_TO:
-            marks = _landmarks(term.landmark, boxes, start) if term.landmark else []
-            return min((outline_gap(box, mark) for mark, _ in marks if mark is not box), default=float("inf"))
+def _same(one: Meaning, other: Meaning) -> bool:
+    return frozenset(one.terms) == frozenset(other.terms)

@@ -24,6 +24,9 @@ ABOVE_GAP = (1.2, 2.0)
 ABOVE_OFFSET = (0.3, 0.7)
 """Metres between the outlines, seen from above: a picture hangs above a sofa that stands before the wall."""
 NEXT_TO_GAP = (0.5, 1.0)
+NEAR_GAP = (1.0, 1.8)
+NEAR_RISE = (0.6, 1.2)
+"""Metres between the heights of two things that are near each other."""
 BETWEEN_MARGIN = (0.25, 0.1)
 """Share of the way at either end that does not count as between."""
 BETWEEN_OFFSET = (0.4, 0.9)
@@ -63,10 +66,14 @@ class Relation(Enum):
     ABOVE = "above"
     BELOW = "below"
     NEXT_TO = "next to"
+    NEAR = "near"
     IN_FRONT_OF = "in front of"
     BEHIND = "behind"
     LEFT_OF = "to the left of"
     RIGHT_OF = "to the right of"
+
+
+SEEN_FROM_START = (Relation.IN_FRONT_OF, Relation.BEHIND, Relation.LEFT_OF, Relation.RIGHT_OF)
 
 
 class Side(Enum):
@@ -105,14 +112,16 @@ def related(relation: Relation, thing: ObjectBox, landmark: ObjectBox, start: St
     match relation:
         case Relation.ON:
             return on(thing, landmark)
-        case Relation.UNDER:
-            return under(thing, landmark)
+        case Relation.UNDER:  # people say "under" and "below" for one another
+            return max(under(thing, landmark), min(Truth.MAYBE, above(landmark, thing)))
         case Relation.ABOVE:
             return above(thing, landmark)
         case Relation.BELOW:
-            return above(landmark, thing)
+            return max(above(landmark, thing), min(Truth.MAYBE, under(thing, landmark)))
         case Relation.NEXT_TO:
             return next_to(thing, landmark)
+        case Relation.NEAR:
+            return near(thing, landmark)
         case Relation.IN_FRONT_OF:
             return _lined_up(thing, landmark, start)
         case Relation.BEHIND:
@@ -157,6 +166,12 @@ def next_to(thing: ObjectBox, landmark: ObjectBox) -> Truth:
     if max(on(thing, landmark), on(landmark, thing), under(thing, landmark), under(landmark, thing)) > Truth.NO:
         return Truth.NO
     return min(at_most(outline_gap(thing, landmark), NEXT_TO_GAP), at_least(shared, (0.05, -0.15)))
+
+
+def near(thing: ObjectBox, landmark: ObjectBox) -> Truth:
+    """Close by, whether beside, on or under."""
+    rise = max(thing.bottom, landmark.bottom) - min(thing.top, landmark.top)
+    return min(at_most(outline_gap(thing, landmark), NEAR_GAP), at_most(rise, NEAR_RISE))
 
 
 def between(thing: ObjectBox, one: ObjectBox, other: ObjectBox) -> Truth:
