@@ -57,16 +57,17 @@ def main() -> None:
         tiles.append(labelled(photograph(surfels, size, 2 * tile), noun, tile))
     with (folder / "costs.csv").open("w", newline="") as file:
         writer = csv.writer(file)
-        writer.writerow("noun x y z parts triangles surfels_at_5cm build_ms mesh_ms surfels_ms".split())
+        writer.writerow(
+            ["noun", "x", "y", "z", "parts", "triangles", "surfels_at_5cm", "build_ms", "mesh_ms", "surfels_ms"]
+        )
         writer.writerows(rows)
     if "--one-sheet" in sys.argv:
         cv2.imwrite(str(folder / "catalogue.jpg"), sheet(tiles, 16)[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 72])
     else:
         for i in range(0, len(tiles), 30):
             cv2.imwrite(str(folder / f"catalogue_{i // 30}.png"), sheet(tiles[i : i + 30], 6)[..., ::-1])
-    print(
-        f"{len(nouns)} kinds, {sum(int(r[5]) for r in rows)} triangles, {sum(float(r[7]) for r in rows):.0f} ms to build"
-    )
+    total = [sum(float(r[i]) for r in rows) for i in (5, 7, 8, 9)]
+    print(f"{len(nouns)} kinds: {total[0]:.0f} triangles; ms to build, mesh, cut: {total[1:]}")
 
 
 def example(noun: str, kind: Kind) -> tuple[list[Part], tuple[float, float, float]]:
@@ -87,7 +88,9 @@ def joined(parts: list[Part], spacing: float) -> Surfels:
 def photograph(surfels: Surfels, size: tuple[float, float, float], pixels: int) -> NDArray[np.uint8]:
     """(pixels, pixels, 3) the object on grey ground, seen from its front, a little to the right and above."""
     span = float(max(np.linalg.norm(size[:2]) * 0.95, size[2]))
-    floor = Part(Sheet((-4 * span, -4 * span, 0.0), (8 * span, 0.0, 0.0), (0.0, 8 * span, 0.0)), Material((0.55,) * 3))
+    floor = Part(
+        Sheet((-4 * span, -4 * span, 0.0), (8 * span, 0.0, 0.0), (0.0, 8 * span, 0.0)), Material((0.4, 0.4, 0.4))
+    )
     scene = Surfels.joined([surfels, surfels_of(floor, span / 16)])
     cloud = splats(scene, shaded(scene, span / PIECES_ACROSS))
     middle = np.array([0.0, 0.0, size[2] * 0.48])
@@ -97,7 +100,9 @@ def photograph(surfels: Surfels, size: tuple[float, float, float], pixels: int) 
         Intrinsics.from_horizontal_fov(pixels, pixels, FIELD_OF_VIEW),
         look_along(middle + distance * direction, -direction),
     )
-    return next(iter(CpuRasterizer().render(cloud, [camera]))).rgb
+    view = next(iter(CpuRasterizer().render(cloud, [camera])))
+    backdrop = 225 * (1 - view.alpha[..., None])
+    return np.clip(view.rgb + backdrop, 0, 255).astype(np.uint8)
 
 
 def shaded(surfels: Surfels, cell: float) -> Float:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flymirage_core.worldgen.materials import Material
-from flymirage_core.worldgen.parts import box, foliage, paint, turned
-from flymirage_core.worldgen.surfaces import Float, Part, Patch, Sheet, Vector, upright
+from flymirage_core.worldgen.parts import box, ellipsoid, paint, turned
+from flymirage_core.worldgen.surfaces import Float, Leaves, Part, Patch, Sheet, Vector, upright
 
 BEND_STEPS = 4
 """Straight pieces of a pipe's bend."""
@@ -207,13 +207,41 @@ def crown(
     leaf: tuple[float, float],
     count: int,
     rng: np.random.Generator,
+    solid: float = 0.72,
 ) -> list[Part]:
-    """Leaves on the outside of several ellipsoids (radii, centre) each: a tree's or bush's head."""
+    """Leaves lying on the outside of several ellipsoids (radii, centre): the head of a tree, bush or hedge.
+
+    ``leaf`` is (length, width); a dark body of ``solid`` of each radius fills it, so that no light comes through.
+    """
     weight = np.array([r[0] * r[1] + r[0] * r[2] + r[1] * r[2] for r, _ in blobs])
-    parts = []
+    leaves, cores = [], []
     for (radii, centre), share in zip(blobs, weight / weight.sum(), strict=True):
-        parts.append(foliage(material, radii, centre, leaf, max(12, int(count * share)), rng))
-    return parts
+        number = max(12, int(count * share))
+        out = rng.normal(size=(number, 3))
+        out /= np.linalg.norm(out, axis=1, keepdims=True)
+        centres = out * np.asarray(radii) * rng.uniform(0.72, 1.0, (number, 1)) + np.asarray(centre)
+        facing = out + rng.normal(size=(number, 3)) * 0.45 + [0.0, 0.0, 0.25]
+        lengths = np.cross(facing, rng.normal(size=(number, 3)))
+        lengths *= leaf[0] / 2 / np.maximum(np.linalg.norm(lengths, axis=1, keepdims=True), 1e-9)
+        widths = np.cross(facing, lengths)
+        widths *= leaf[1] / 2 / np.maximum(np.linalg.norm(widths, axis=1, keepdims=True), 1e-9)
+        leaves.append((centres, lengths * rng.uniform(0.7, 1.2, (number, 1)), widths))
+        if solid > 0:
+            core = (radii[0] * solid, radii[1] * solid, radii[2] * solid)
+            cores.append(ellipsoid(material.shaded(0.45), core, centre))
+    return [Part(Leaves(*(np.concatenate(a) for a in zip(*leaves, strict=True))), material), *cores]
+
+
+def two_sided(part: Part, shade: float = 0.8) -> list[Part]:
+    """A cloth's or pane's patch, and its back in a darker tone."""
+    assert isinstance(part.surface, Patch)
+    back = Part(Patch(part.surface.grid[:, ::-1]), part.material.shaded(shade), part.offset, part.rotation)
+    return [part, back]
+
+
+def skin(material: Material, rows: ArrayLike, shade: float = 0.8) -> list[Part]:
+    """A two-sided cloth through rows of points (R, Q, 3); its front is cross(down the rows, along a row)."""
+    return two_sided(Part(Patch(np.asarray(rows, float)), material), shade)
 
 
 def sign(
@@ -255,3 +283,12 @@ def bolts(material: Material, radius: float, count: int, size: float, height: fl
     """Bolt heads in a circle round z at ``height``."""
     head = turned(material, [(0, 0), (size, 0), (size, size), (0, size)], (radius, 0.0, height))
     return spun(head, count)
+
+
+def hull(material: Material, stations: Sequence[tuple[float, float, float, float]], radius: float = 0.1) -> Part:
+    """A body along y through rounded sections: (y, width, bottom, top) from back to front: vehicles, boats, ducts."""
+    rings = []
+    for y, width, low, high in stations:
+        ring = rounded_ring(high - low, width, radius)
+        rings.append(np.column_stack([ring[:, 1], np.full(len(ring), y), ring[:, 0] + (low + high) / 2]))
+    return loft(material, rings)
