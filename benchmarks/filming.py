@@ -17,6 +17,7 @@ from typing import Any
 
 import av
 import cv2
+import imagecodecs
 import numpy as np
 from rendering import generated_world
 from scipy.spatial.transform import Rotation
@@ -91,6 +92,10 @@ def compare_codecs(pictures: list[Rendering]) -> None:
         ("FFV1 16 bit", lambda: encoded(depths, "ffv1", "gray16le", FFV1, "mkv")),
         ("HuffYUV 16 bit (ffvhuff)", lambda: encoded(depths, "ffvhuff", "gray16le", {"pred": "median"}, "nut")),
         ("JPEG-LS 16 bit", lambda: encoded(depths, "jpegls", "gray16le", {}, "nut")),
+        *(
+            (f"JPEG XL 16 bit, effort {effort}", lambda effort=effort: as_jpeg_xl(depths, effort))
+            for effort in (1, 2, 3)
+        ),
         *((f"PNG 16 bit, zlib {level}", lambda level=level: as_png(depths, level)) for level in (1, 3, 6)),
         ("HEVC 12 bit, lossless", lambda: as_hevc(depths, "lossless=1")),
         ("HEVC 12 bit, crf 0", lambda: as_hevc(depths, "crf=0")),
@@ -124,6 +129,13 @@ def encoded(
         with av.open(str(path)) as video:
             back = [frame.to_ndarray(format=pixel_format) for frame in video.decode(video=0)]
         return path.stat().st_size / 1000 / count, cost, back
+
+
+def as_jpeg_xl(depths: list[np.ndarray], effort: int) -> tuple[float, float, list[np.ndarray]]:
+    start = time.process_time()
+    files = [imagecodecs.jpegxl_encode(depth, lossless=True, effort=effort, numthreads=1) for depth in depths]
+    cost = (time.process_time() - start) * 1000 / len(depths)
+    return sum(map(len, files)) / 1000 / len(files), cost, [imagecodecs.jpegxl_decode(file) for file in files]
 
 
 def as_png(depths: list[np.ndarray], level: int) -> tuple[float, float, list[np.ndarray]]:

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
 from flymirage_core.operation_settings import Executor, GrowthSettings, OperationSettings
+from flymirage_core.annotation.settings import AnnotationSettings as AnnotationSettings
 from flymirage_core.service_settings import ServicesSettings
 
 Positive = Annotated[float, Field(gt=0)]
@@ -92,17 +93,6 @@ class ExplorationSettings(Section):
     """Distance along the path between two rigs."""
     stand_off: Positive = 1.0
     """The path ends this far before the target's box at the latest."""
-
-
-class AnnotationSettings(Section):
-    """Boxes from posed RGB-D; the distance limit of the second pass is d_th1 of `TargetSettings`."""
-
-    voxel: Positive = 0.03
-    """Edge of the voxels in which pixels of all views are averaged."""
-    fusion_iou: Positive = 0.3
-    """Detections of a per-view detector that overlap by this are one object."""
-    min_detections: Count = 4
-    """An object of a per-view detector must be seen in this many views."""
 
 
 class TaskSettings(Section):
@@ -195,7 +185,9 @@ class FrameSettings(Section):
     rate: Positive = 10.0
     """Hz; must divide the planner's state_rate. 30 is video as people know it, at three times the size."""
     instances: bool = False
-    """Write a third, lossless video: which object each pixel shows."""
+    """Write a third, lossless file for each flight: which object each pixel shows."""
+    surround: bool = False
+    """Film to the left, the back and the right too, with cameras like the first: the paper's four-view rig."""
     pitch_deg: float = 0.0
     """Downward tilt of the camera on the body."""
 
@@ -239,6 +231,8 @@ class ToolSettings(Section):
     world_model: Literal["", "offline", "service"] = ""
     frame_judge: Literal["", "offline", "service"] = ""
     prompter: Literal["", "offline", "service"] = ""
+    annotator: Literal["embedded", "boxer"] = "embedded"
+    """"boxer" is a checkout of the user's own, for non-commercial use only; see ``annotation.boxer``."""
 
 
 class Settings(BaseSettings):

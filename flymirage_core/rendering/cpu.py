@@ -177,7 +177,7 @@ def rasterize(table: SplatTable, camera: Camera, scratch: Scratch) -> FloatPictu
 
 def compile_kernels() -> None:
     """Compile the kernels, or load them from numba's cache, before the first picture; tells the progress listener."""
-    if kernels.render_frame.signatures:
+    if kernels.compiled():
         return
     with ThreadPoolExecutor(1, "compiler") as pool:
         compiled = pool.submit(_first_picture)

@@ -93,14 +93,14 @@ Splats = tuple[Float32, Float32, Float32, UInt32, Float32, Float32]
 """means (3, N), axes (9, N), log2 opacities (N,), file indices (N,), blocks (N / 256, 4), sh (3 K, N)."""
 
 
-@njit(**FAST)
 def render_frame(
     splats: Splats, camera: Float64, records: Float32, ids: UInt32, rgb: Float32, depth: Float32, alpha: Float32
 ) -> None:
     """Fill ``rgb`` (H, W, 3), expected ``depth`` (H, W) in metres and ``alpha`` (H, W) with one frame, on black.
 
     ``splats`` are the arrays of `cpu.SplatTable`; ``camera`` (18,) is R_camera_world by rows, the eye's position, fx,
-    fy, cx, cy, width, height. ``records`` (N, 16) and ``ids`` (N,) are scratch, for one thread at a time.
+    fy, cx, cy, width, height. ``records`` (N, 16) and ``ids`` (N,) are scratch, for one thread at a time. Not compiled
+    itself: LLVM would optimise all of the kernels once more, for a second of the first start.
     """
     means, axes, opacities, file_indices, blocks, sh = splats
     height, width = alpha.shape
@@ -108,6 +108,11 @@ def render_frame(
     order = _depth_order(records, ids, file_indices, count)
     starts, lists = _bin(records, order, width, height)
     _blend(records, starts, lists, rgb, depth, alpha)
+
+
+def compiled() -> bool:
+    """Are the kernels compiled, or loaded from numba's cache, in this process?"""
+    return bool(_blend.signatures)
 
 
 @njit(**FAST)

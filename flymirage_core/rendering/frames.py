@@ -1,16 +1,17 @@
 """`Frames`, the product of the `frames` asset: for each flight an RGB video, a depth video and a pose a frame.
 
-Layout: ``<flight_id:04d>/rgb.mp4`` (H.264), ``<flight_id:04d>/depth.mkv`` (FFV1, 16-bit millimetres, 0 = no return),
-if asked for ``<flight_id:04d>/instances.mkv`` (FFV1, 16 bits, object_id + 1, 0 = no object), ``frames.parquet``
-(`FRAME_SCHEMA`, a row a frame), ``camera.json`` (intrinsics, T_body_camera, frame rate), ``videos.json`` (sizes and
-checksums). Nothing is decoded before it is asked for. `recording` makes it.
+Layout: ``<flight_id:04d>/rgb.mp4`` (H.264), ``<flight_id:04d>/depth.zip`` (lossless JPEG XL, 16-bit millimetres, 0 = no
+return), if asked for ``<flight_id:04d>/instances.zip`` (the same, object_id + 1, 0 = no object) and the same files in
+``<flight_id:04d>/left``, ``back`` and ``right``; ``frames.parquet`` (`FRAME_SCHEMA`, a row a frame), ``camera.json``
+(intrinsics, T_body_camera, frame rate), ``videos.json`` (sizes and checksums). Nothing is decoded before it is asked
+for. `recording` makes it.
 """
 
 import json
 import math
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -23,8 +24,9 @@ from scipy.spatial.transform import Rotation
 from flymirage_core.errors import InputError, ProductError
 from flymirage_core.files import link_tree
 from flymirage_core.rendering.camera import Camera, Intrinsics
+from flymirage_core.rendering.image_stack import read_images, read_images_at
 from flymirage_core.rendering.instances import OrientedBoxes
-from flymirage_core.rendering.video import read_depth, read_depth_at, read_rgb, read_rgb_at
+from flymirage_core.rendering.video import read_rgb, read_rgb_at
 from flymirage_core.settings import FrameSettings
 
 Float64 = NDArray[np.float64]
@@ -46,17 +48,30 @@ FRAME_SCHEMA = pa.schema(
     ]
 )
 
+VIDEOS = ("rgb.mp4", "depth.zip")
+SIDES = {"left": 90.0, "back": 180.0, "right": 270.0}
+"""Where the other three cameras of a surround rig look: degrees about the body's z from where the first one looks."""
 TARGET_SEEN = 5e-4
 """Share of the pixels from which on a target counts as in view: 12 x 12 of 640 x 480."""
 
 
 @dataclass(frozen=True)
 class CameraRig:
-    """The drone's camera: intrinsics, where it sits on the body (FLU), and its frame rate in Hz."""
+    """The drone's camera: intrinsics, where it sits on the body (FLU), its frame rate in Hz, and others beside it."""
 
     intrinsics: Intrinsics
     T_body_camera: tuple[tuple[float, ...], ...]  # 4x4, camera (OpenCV) to body (FLU)
     frame_rate: float
+    sides: tuple[str, ...] = ()  # names in `SIDES` of like cameras that look elsewhere
+
+    def looking(self, side: str) -> "CameraRig":
+        """The camera of that name in `SIDES` alone. Raises `InputError` if the rig has none."""
+        if side not in self.sides:
+            raise InputError(f"the rig has no camera that looks {side}; set frames.surround and film again")
+        turned = np.eye(4)
+        turned[:3, :3] = Rotation.from_euler("z", SIDES[side], degrees=True).as_matrix()
+        pose = turned @ np.array(self.T_body_camera)
+        return replace(self, T_body_camera=tuple(tuple(row) for row in pose.tolist()), sides=())
 
     def save(self, path: Path) -> None:
         path.write_text(json.dumps(asdict(self), indent=2) + "\n")
@@ -65,7 +80,7 @@ class CameraRig:
     def load(path: Path) -> "CameraRig":
         data = json.loads(path.read_text())
         rows = tuple(tuple(float(x) for x in row) for row in data["T_body_camera"])
-        return CameraRig(Intrinsics(**data["intrinsics"]), rows, data["frame_rate"])
+        return CameraRig(Intrinsics(**data["intrinsics"]), rows, data["frame_rate"], tuple(data["sides"]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,6 +120,19 @@ class FlightFrames:
         poses = _poses_from(np.array(self.table["position"].tolist()), np.array(self.table["quaternion"].tolist()))
         return [Camera(self.rig.intrinsics, pose) for pose in poses]
 
+    def looking(self, side: str) -> "FlightFrames":
+        """The same flight through the camera "left", "back" or "right", whose share of the target nobody measured.
+
+        Raises `InputError` if it was not filmed.
+        """
+        rig = self.rig.looking(side)
+        T_front_side = np.linalg.inv(self.rig.T_body_camera) @ np.array(rig.T_body_camera)
+        poses = np.array([camera.T_world_camera @ T_front_side for camera in self.cameras()])  # (T, 4, 4)
+        table = self.table[["flight_id", "frame_index", "time"]].assign(
+            position=list(poses[:, :3, 3]), quaternion=list(Rotation.from_matrix(poses[:, :3, :3]).as_quat())
+        )
+        return FlightFrames(self.flight_id, self.folder / side, rig, table)
+
     def rgb(self) -> Iterator[NDArray[np.uint8]]:
         """Pictures (H, W, 3), in order. Raises `ProductError` if the video is missing, torn or short."""
         return read_rgb(self.folder / "rgb.mp4", len(self))
@@ -115,15 +143,15 @@ class FlightFrames:
 
     def depth_at(self, indices: Iterable[int]) -> list[NDArray[np.uint16]]:
         """The depth frames at ``indices``. Errors as in `rgb`."""
-        return read_depth_at(self.folder / "depth.mkv", indices)
+        return read_images_at(self.folder / "depth.zip", indices)
 
     def instances(self) -> Iterator[NDArray[np.uint16]]:
         """Object numbers (H, W), in order: ``object_id + 1``, 0 = none. Raises `ProductError` if there is no video."""
-        return read_depth(self.folder / "instances.mkv", len(self))
+        return read_images(self.folder / "instances.zip", len(self))
 
     def depth(self) -> Iterator[NDArray[np.uint16]]:
         """Depth (H, W) in millimetres, in order; 0 = no return. Raises `ProductError` as `rgb` does."""
-        return read_depth(self.folder / "depth.mkv", len(self))
+        return read_images(self.folder / "depth.zip", len(self))
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +211,7 @@ class Frames:
                 raise ProductError(f"{path} is damaged: its checksum is wrong; materialise `frames` again")
 
     def _check_index(self, videos: set[str]) -> None:
-        """Every flight's frames are numbered 0, 1, 2, ... and it has both of its videos."""
+        """Every flight's frames are numbered 0, 1, 2, ... and each of its cameras has both of its videos."""
         for flight_id in self.flight_ids:
             rows = self.table["frame_index"][self.table["flight_id"] == flight_id]
             if rows.tolist() != list(range(len(rows))):
@@ -191,8 +219,8 @@ class Frames:
                     f"{self.folder / 'frames.parquet'}: flight {flight_id} has {len(rows)} rows that are not numbered "
                     f"from 0 to {len(rows) - 1}; materialise `frames` again"
                 )
-            for name in ("rgb.mp4", "depth.mkv"):
-                path = flight_folder(Path(), flight_id) / name
+            folder = flight_folder(Path(), flight_id)
+            for path in (at / name for at in (folder, *(folder / s for s in self.rig.sides)) for name in VIDEOS):
                 if path.as_posix() not in videos:
                     raise ProductError(
                         f"{self.folder / 'videos.json'} does not know {path}; materialise `frames` again"
@@ -210,13 +238,14 @@ def _load_video_files(folder: Path) -> list[VideoFile]:
 
 
 def camera_rig(settings: FrameSettings) -> CameraRig:
-    """A camera in the body's centre that looks along its x axis, tilted down by ``pitch_deg``."""
+    """A camera in the body's centre that looks along its x axis, tilted by ``pitch_deg``; more with ``surround``."""
     T_body_camera = np.eye(4)
     nose_down = Rotation.from_euler("y", math.radians(settings.pitch_deg))  # y is left: positive lowers the nose
     T_body_camera[:3, :3] = nose_down.as_matrix() @ LEVEL_CAMERA
     fov = math.radians(settings.horizontal_fov_deg)
     intrinsics = Intrinsics.from_horizontal_fov(settings.width, settings.height, fov)
-    return CameraRig(intrinsics, tuple(tuple(row) for row in T_body_camera.tolist()), settings.rate)
+    sides = tuple(SIDES) if settings.surround else ()
+    return CameraRig(intrinsics, tuple(tuple(row) for row in T_body_camera.tolist()), settings.rate, sides)
 
 
 def cameras_along(path: BodyPath, rig: CameraRig) -> list[Camera]:

@@ -9,7 +9,7 @@ import zlib
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -33,9 +33,10 @@ from flymirage_core.rendering.frames import (
     flight_folder,
     save_video_files,
 )
+from flymirage_core.rendering.image_stack import ImageStackWriter
 from flymirage_core.rendering.instances import OrientedBoxes, instance_ids, seen_share
 from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rasterizer, Rendering
-from flymirage_core.rendering.video import VideoWriter, depth_writer, instance_writer, rgb_writer
+from flymirage_core.rendering.video import VideoWriter
 from flymirage_core.rendering.views import depth_to_millimetres
 from flymirage_core.splats.cloud import GaussianCloud
 
@@ -58,29 +59,34 @@ def record_frames(
     """
     folder.mkdir(parents=True, exist_ok=True)
     rig.save(folder / "camera.json")
-    films = {
-        path.flight_id: _Film(folder, path, cameras_along(path, rig), rig.frame_rate, objects)
-        for path in paths
-        if len(path.times)
-    }
-    order = list(turns({flight_id: len(film.cameras) for flight_id, film in films.items()}, lanes()))
-    places = {flight_id: iter(film.cameras) for flight_id, film in films.items()}
-    pictures = rasterizer.render(cloud, [next(places[flight_id]) for flight_id in order])
+    films = [film for path in paths if len(path.times) for film in _films(folder, path, rig, objects)]
+    order = list(turns({number: len(film.cameras) for number, film in enumerate(films)}, lanes()))
+    places = [iter(film.cameras) for film in films]
+    pictures = rasterizer.render(cloud, [next(places[number]) for number in order])
     try:
-        for done, flight_id in enumerate(order):
+        for done, number in enumerate(order):
             picture = next(pictures, None)
             if picture is None:
                 raise ProductError(f"{folder}: the rasterizer gave {done} pictures, {len(order)} were asked for")
-            films[flight_id].append(picture)
-        for film in films.values():
+            films[number].append(picture)
+        for film in films:
             film.finish()
     finally:
-        for film in films.values():
+        for film in films:
             film.abandon()
-    save_video_files(folder, [file for film in films.values() for file in film.files])
-    table = pa.concat_tables([FRAME_SCHEMA.empty_table(), *(film.rows() for film in films.values())])
+    save_video_files(folder, [file for film in films for file in film.files])
+    rows = [film.rows() for film in films if film.is_front]
+    table = pa.concat_tables([FRAME_SCHEMA.empty_table(), *rows])
     pq.write_table(table, folder / "frames.parquet", write_page_checksum=True)
     return Frames(folder, rig, table.to_pandas())
+
+
+def _films(folder: Path, path: BodyPath, rig: CameraRig, objects: OrientedBoxes | None) -> Iterator["_Film"]:
+    """One for each camera of the rig, the front one first."""
+    at = flight_folder(folder, path.flight_id)
+    yield _Film(folder, at, path, rig, objects)
+    for side in rig.sides:
+        yield _Film(folder, at / side, replace(path, target=None), rig.looking(side), objects, is_front=False)
 
 
 def lanes() -> int:
@@ -115,20 +121,27 @@ class Measured:
 
 
 class _Film:
-    """One flight's videos in the making, and its rows of `FRAME_SCHEMA`.
+    """One flight's videos in the making, through one camera, and its rows of `FRAME_SCHEMA`.
 
     Its threads start with its first picture, and end with its last.
     """
 
     def __init__(
-        self, folder: Path, path: BodyPath, cameras: list[Camera], rate: float, objects: OrientedBoxes | None
+        self,
+        root: Path,
+        at: Path,
+        path: BodyPath,
+        rig: CameraRig,
+        objects: OrientedBoxes | None,
+        *,
+        is_front: bool = True,
     ) -> None:
-        self.path, self.cameras, self.files = path, cameras, list[VideoFile]()
-        self._objects, self._given, self._measured = objects, 0, list[Measured]()
-        self._root, at = folder, flight_folder(folder, path.flight_id)
-        self._rgb = _Encoder(rgb_writer(at / "rgb.mp4", rate))
-        self._depth = _Encoder(depth_writer(at / "depth.mkv", rate))
-        self._instances = _Encoder(instance_writer(at / "instances.mkv", rate)) if objects is not None else None
+        self.path, self.is_front, self.files = path, is_front, list[VideoFile]()
+        self.cameras = cameras_along(path, rig)
+        self._root, self._objects, self._given, self._measured = root, objects, 0, list[Measured]()
+        self._rgb = _Encoder(VideoWriter(at / "rgb.mp4", rig.frame_rate))
+        self._depth = _Encoder(ImageStackWriter(at / "depth.zip"))
+        self._instances = _Encoder(ImageStackWriter(at / "instances.zip")) if objects is not None else None
 
     def append(self, picture: Rendering) -> None:
         """Hand one more picture to the encoders; waits for them if they are `QUEUE` pictures behind."""
@@ -174,23 +187,24 @@ class _Film:
         return [self._rgb, self._depth, *([self._instances] if self._instances is not None else [])]
 
     def _look_at(self, picture: Rendering, camera: Camera) -> np.ndarray:
-        """Measure a picture, and make its depth ready for the video: (H, W) uint16 millimetres."""
-        returns = int(np.count_nonzero(picture.depth))
+        """Measure a picture, and make its depth ready to be kept: (H, W) uint16 millimetres."""
+        millimetres = depth_to_millimetres(picture.depth)
+        returns = int(np.count_nonzero(millimetres))
         target = self.path.target
         self._measured.append(
             Measured(
                 float(np.count_nonzero(picture.alpha >= MIN_ALPHA_FOR_DEPTH)) / picture.alpha.size,
-                float(picture.depth.sum(dtype=np.float64)) / returns if returns else 0.0,
+                float(millimetres.sum(dtype=np.uint64)) / returns / 1000 if returns else 0.0,
                 None if target is None else seen_share(picture.depth, camera, target),
             )
         )
-        return depth_to_millimetres(picture.depth)
+        return millimetres
 
 
 class _Encoder:
     """A video writer on a thread of its own, which starts with the first picture."""
 
-    def __init__(self, writer: VideoWriter) -> None:
+    def __init__(self, writer: VideoWriter | ImageStackWriter) -> None:
         self._writer = writer
         self._pool: ThreadPoolExecutor | None = None
         self._pending: deque[Future[Any]] = deque()

@@ -1,4 +1,4 @@
-"""Videos on disk: RGB as H.264 in mp4, depth without loss as FFV1 in Matroska. Frames go in and come out one by one.
+"""RGB video on disk: H.264 in mp4. Frames go in and come out one by one.
 
 The same frames give the same bytes whatever else the machine does: one encoder thread, no random identifiers, no dates.
 """
@@ -20,11 +20,8 @@ from flymirage_core.errors import InputError, ProductError
 GROUP_OF_PICTURES = 2
 """Frames from one key frame to the next; small, so that a trainer can jump to any frame (LeRobot's choice)."""
 H264_OPTIONS = {"crf": "18", "preset": "ultrafast"}
-"""42 to 45 dB at 640 x 480, 22 to 27 kB and 1.5 ms of CPU a frame; "veryfast" is a third smaller and takes 4 ms, which
-the renderer would wait for. Depth is three times as large anyway (benchmarks/RENDERING.md)."""
-FFV1_OPTIONS = {"level": "3", "coder": "1", "context": "0", "slices": "4", "slicecrc": "1"}
-"""A checksum in every slice. 53 to 89 kB and 3.3 to 5 ms of CPU a frame at 640 x 480: less than PNG, and exact, which
-12-bit HEVC is not (benchmarks/RENDERING.md)."""
+"""42 to 47 dB at 640 x 480, 22 to 29 kB and 1.5 ms of CPU a frame; "veryfast" is a third smaller and takes 5 ms, which
+the renderer would wait for. Depth is four times as large anyway (benchmarks/RENDERING.md)."""
 BT601 = Colorspace.ITU601
 YUV_FROM_RGB = np.array(
     [[65.481, 128.553, 24.966, 16 * 255], [-37.797, -74.203, 112.0, 128 * 255], [112.0, -93.786, -18.214, 128 * 255]]
@@ -33,16 +30,12 @@ YUV_FROM_RGB = np.array(
 
 
 class VideoWriter:
-    """Encodes frame after frame into one file; the file is whole when the ``with`` block has ended.
+    """Encodes RGB frames at ``rate`` Hz into one H.264 file (yuv420p), whole when the ``with`` block has ended."""
 
-    Make one with `rgb_writer` or `depth_writer`.
-    """
-
-    def __init__(self, path: Path, codec: str, pixel_format: str, rate: float, options: dict[str, str]) -> None:
+    def __init__(self, path: Path, rate: float) -> None:
         self.path = path
         self.count = 0
-        self._codec, self._rate, self._options = codec, Fraction(rate).limit_denominator(1001), options
-        self._format = pixel_format
+        self._rate = Fraction(rate).limit_denominator(1001)
         self._container: Any = None
         self._stream: Any = None
 
@@ -79,8 +72,8 @@ class VideoWriter:
             self._container.close()
             self._container = None
 
-    def append(self, frame: NDArray[np.generic]) -> None:
-        """Encode one more frame; its shape must be the first one's."""
+    def append(self, frame: NDArray[np.uint8]) -> None:
+        """Encode one more frame (H, W, 3), H and W even; its shape must be the first one's. Raises `InputError`."""
         height, width = frame.shape[:2]
         if self._stream is None:
             self._open_stream(width, height)
@@ -90,53 +83,28 @@ class VideoWriter:
                 f"{self.path.name}: frame {self.count} is {width} x {height} pixels, the first was "
                 f"{stream.width} x {stream.height}; all frames of a video must have one size"
             )
-        planes = i420(np.asarray(frame, np.uint8)) if self._format == "yuv420p" else np.ascontiguousarray(frame)
-        picture = av.VideoFrame.from_ndarray(planes, format=self._format)
+        picture = av.VideoFrame.from_numpy_buffer(i420(frame), format="yuv420p")
         picture.pts, picture.time_base = self.count, 1 / self._rate
         self._container.mux(stream.encode(picture))
         self.count += 1
 
     def _open_stream(self, width: int, height: int) -> None:
-        if self._format == "yuv420p" and (width % 2 or height % 2):
+        if width % 2 or height % 2:
             raise InputError(
                 f"{self.path.name}: {width} x {height} pixels; H.264 video needs an even width and an even height"
             )
-        stream = self._stream = self._container.add_stream(self._codec, rate=self._rate, options=self._options)
-        stream.width, stream.height, stream.pix_fmt = width, height, self._format
+        stream = self._stream = self._container.add_stream("libx264", rate=self._rate, options=H264_OPTIONS)
+        stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
         context = stream.codec_context
         context.gop_size, context.max_b_frames, context.thread_count = GROUP_OF_PICTURES, 0, 1
         context.flags |= av.codec.context.Flags.bitexact
         context.time_base = 1 / self._rate
-        if self._format == "yuv420p":
-            context.colorspace, context.color_range = BT601, ColorRange.MPEG
-
-
-def rgb_writer(path: Path, rate: float) -> VideoWriter:
-    """H.264 yuv420p for frames uint8 (H, W, 3), H and W even, at ``rate`` Hz. Raises `InputError` on odd sizes."""
-    return VideoWriter(path, "libx264", "yuv420p", rate, H264_OPTIONS)
-
-
-def depth_writer(path: Path, rate: float) -> VideoWriter:
-    """FFV1 gray16le for frames uint16 (H, W) in millimetres, 0 = no return, at ``rate`` Hz. Lossless."""
-    return VideoWriter(path, "ffv1", "gray16le", rate, FFV1_OPTIONS)
-
-
-def instance_writer(path: Path, rate: float) -> VideoWriter:
-    """As `depth_writer`, for frames uint16 (H, W) of object numbers, 0 = no object."""
-    return VideoWriter(path, "ffv1", "gray16le", rate, FFV1_OPTIONS)
+        context.colorspace, context.color_range = BT601, ColorRange.MPEG
 
 
 def write_rgb(path: Path, frames: Iterable[NDArray[np.uint8]], rate: float) -> int:
     """Write RGB ``frames`` (H, W, 3) as they come; return how many there were."""
-    with rgb_writer(path, rate) as writer:
-        for frame in frames:
-            writer.append(frame)
-    return writer.count
-
-
-def write_depth(path: Path, frames: Iterable[NDArray[np.uint16]], rate: float) -> int:
-    """Write depth ``frames`` (H, W) in millimetres as they come; return how many there were."""
-    with depth_writer(path, rate) as writer:
+    with VideoWriter(path, rate) as writer:
         for frame in frames:
             writer.append(frame)
     return writer.count
@@ -144,22 +112,12 @@ def write_depth(path: Path, frames: Iterable[NDArray[np.uint16]], rate: float) -
 
 def read_rgb(path: Path, count: int) -> Iterator[NDArray[np.uint8]]:
     """The ``count`` RGB frames (H, W, 3) of a video, one by one; raises `ProductError` if they are not all there."""
-    return (_rgb_from(planes) for planes in _decoded(path, "yuv420p", count))
+    return (_rgb_from(planes) for planes in _decoded(path, count))
 
 
 def read_rgb_at(path: Path, indices: Iterable[int]) -> list[NDArray[np.uint8]]:
     """The RGB frames (H, W, 3) at ``indices`` of a video, without decoding those before; errors as in `read_rgb`."""
-    return [_rgb_from(planes) for planes in _decoded_at(path, "yuv420p", indices)]
-
-
-def read_depth_at(path: Path, indices: Iterable[int]) -> list[NDArray[np.uint16]]:
-    """The depth frames (H, W) in millimetres at ``indices``, without decoding those before; errors as in `read_rgb`."""
-    return list(_decoded_at(path, "gray16le", indices))
-
-
-def read_depth(path: Path, count: int) -> Iterator[NDArray[np.uint16]]:
-    """The ``count`` depth frames (H, W) in millimetres, one by one; raises `ProductError` as `read_rgb` does."""
-    yield from _decoded(path, "gray16le", count)
+    return [_rgb_from(planes) for planes in _decoded_at(path, indices)]
 
 
 def i420(rgb: NDArray[np.uint8]) -> NDArray[np.uint8]:
@@ -181,7 +139,7 @@ def _rgb_from(planes: NDArray[Any]) -> NDArray[np.uint8]:
     return np.asarray(cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8)
 
 
-def _decoded_at(path: Path, pixel_format: str, indices: Iterable[int]) -> Iterator[NDArray[Any]]:
+def _decoded_at(path: Path, indices: Iterable[int]) -> Iterator[NDArray[Any]]:
     try:
         with av.open(str(path)) as container:
             stream: Any = container.streams.video[0]
@@ -191,12 +149,12 @@ def _decoded_at(path: Path, pixel_format: str, indices: Iterable[int]) -> Iterat
                 frame = next((f for f in container.decode(stream) if f.pts >= wanted), None)
                 if frame is None or frame.is_corrupt:
                     raise ProductError(f"{path} has no whole frame {index}; materialise `frames` again")
-                yield frame.to_ndarray(format=pixel_format)
+                yield frame.to_ndarray(format="yuv420p")
     except (av.FFmpegError, IndexError) as error:
         raise ProductError(f"{path} is missing or torn ({error}); materialise `frames` again") from error
 
 
-def _decoded(path: Path, pixel_format: str, count: int) -> Iterator[NDArray[Any]]:
+def _decoded(path: Path, count: int) -> Iterator[NDArray[Any]]:
     done = 0
     try:
         with av.open(str(path)) as container:
@@ -205,7 +163,7 @@ def _decoded(path: Path, pixel_format: str, count: int) -> Iterator[NDArray[Any]
                     raise ProductError(f"{path}: frame {done} is damaged; materialise `frames` again")
                 done += 1
                 if done <= count:
-                    yield frame.to_ndarray(format=pixel_format)
+                    yield frame.to_ndarray(format="yuv420p")
     except (av.FFmpegError, IndexError) as error:
         raise ProductError(f"{path} is missing or torn ({error}); materialise `frames` again") from error
     if done != count:

@@ -111,7 +111,7 @@ def test_a_scene_without_flights_is_a_whole_product(tmp_path):
     assert Frames.load(tmp_path / "none").summary() == {"flights": 0, "frames": 0}
 
 
-@pytest.mark.parametrize("lost", ["0003/rgb.mp4", "0000/depth.mkv", "frames.parquet", "camera.json"])
+@pytest.mark.parametrize("lost", ["0003/rgb.mp4", "0000/depth.zip", "frames.parquet", "camera.json"])
 def test_a_missing_file_is_found_at_load(frames, lost):
     (frames.folder / lost).unlink()
     with pytest.raises(ProductError, match="materialise"):

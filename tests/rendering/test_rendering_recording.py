@@ -61,15 +61,44 @@ def test_frames_know_how_much_of_them_shows_the_target(tmp_path):
     assert pd.isna(table.loc[2]["target_share"])  # it flies to nothing that is known
 
 
-def test_the_instance_video_shows_the_objects_numbers(tmp_path):
+def test_the_instance_pictures_shows_the_objects_numbers(tmp_path):
     flight = film(tmp_path, hover(0, 3), objects=oriented_boxes([PICTURE_ON_THE_WALL])).flight(0)
     for ids in flight.instances():
         assert ids.shape == (48, 64) and ids[24, 32] == 7 and set(np.unique(ids)) == {0, 7}
 
 
-def test_without_objects_there_is_no_instance_video(tmp_path):
-    with pytest.raises(ProductError, match=r"instances.mkv is missing"):
+def test_without_objects_there_are_no_instance_pictures(tmp_path):
+    with pytest.raises(ProductError, match=r"instances.zip is missing"):
         list(film(tmp_path, hover(0, 2)).flight(0).instances())
+
+
+def test_a_surround_rig_films_to_all_sides_and_its_poses_are_a_quarter_turn_apart(tmp_path):
+    rig = camera_rig(SETTINGS.model_copy(update={"surround": True}))
+    paths = [hover(0, 3), hover(1, 2, math.pi / 2)]  # the second flight's right is where the first looks ahead
+    frames = record_frames(wall(), paths, rig, CpuRasterizer(2), tmp_path)
+    assert Frames.load(tmp_path).rig == rig
+    assert len(frames.table) == 5  # a row for each frame of the first camera
+    right = frames.flight(1).looking("right")
+    ahead = frames.flight(0)
+    np.testing.assert_allclose(right.cameras()[0].T_world_camera, ahead.cameras()[0].T_world_camera, atol=1e-9)
+    np.testing.assert_array_equal(next(right.depth()), next(ahead.depth()))
+    assert not next(ahead.looking("back").depth()).any()  # there is one wall only
+    with pytest.raises(InputError, match="no camera that looks up"):
+        ahead.looking("up")
+
+
+def test_a_rig_of_one_camera_says_how_to_get_more(tmp_path):
+    with pytest.raises(InputError, match=r"no camera that looks left; set frames.surround"):
+        film(tmp_path, hover(0, 2)).flight(0).looking("left")
+
+
+@pytest.mark.parametrize("lost", ["0000/left/rgb.mp4", "0000/back/depth.zip"])
+def test_a_side_video_that_is_lost_is_found_at_load(tmp_path, lost):
+    rig = camera_rig(SETTINGS.model_copy(update={"surround": True}))
+    record_frames(wall(), [hover(0, 2)], rig, CpuRasterizer(2), tmp_path)
+    (tmp_path / lost).unlink()
+    with pytest.raises(ProductError, match=rf"{lost} is missing"):
+        Frames.load(tmp_path)
 
 
 def test_an_encoder_that_fails_ends_the_filming_and_its_threads(tmp_path, monkeypatch):
@@ -83,7 +112,7 @@ def test_an_encoder_that_fails_ends_the_filming_and_its_threads(tmp_path, monkey
     assert not (tmp_path / "frames.parquet").exists()
 
 
-@pytest.mark.parametrize("name", ["0000/rgb.mp4", "0000/depth.mkv"])
+@pytest.mark.parametrize("name", ["0000/rgb.mp4", "0000/depth.zip"])
 def test_a_video_cut_short_is_found_at_load(tmp_path, name):
     film(tmp_path, hover(0, 3))
     (tmp_path / name).write_bytes((tmp_path / name).read_bytes()[:-1])
@@ -91,7 +120,7 @@ def test_a_video_cut_short_is_found_at_load(tmp_path, name):
         Frames.load(tmp_path)
 
 
-@pytest.mark.parametrize("name", ["0000/rgb.mp4", "0000/depth.mkv"])
+@pytest.mark.parametrize("name", ["0000/rgb.mp4", "0000/depth.zip"])
 def test_one_flipped_bit_in_a_video_is_found_by_check(tmp_path, name):
     film(tmp_path, hover(0, 3)).check()
     content = bytearray((tmp_path / name).read_bytes())
@@ -128,7 +157,7 @@ def test_a_flight_whose_videos_are_not_listed_is_found_at_load(tmp_path):
 
 def test_a_person_is_told_that_the_renderer_compiles_and_only_then(monkeypatch):
     heard = []
-    monkeypatch.setattr(cpu.kernels, "render_frame", type("Cold", (), {"signatures": []}))
+    monkeypatch.setattr(cpu.kernels, "compiled", lambda: False)
     monkeypatch.setattr(cpu, "PATIENCE", 0.01)
     release = threading.Event()
     monkeypatch.setattr(cpu, "_first_picture", lambda: release.wait(0.1))
