@@ -7,11 +7,12 @@ from pathlib import Path
 
 def link_tree(source: Path, target: Path) -> None:
     """Make ``target`` hold the files of ``source``, by hard link where the file system can, else by copy."""
-
-    def link_or_copy(src: str, dst: str) -> None:
-        try:
-            os.link(src, dst)
-        except OSError:
-            shutil.copy2(src, dst)
-
     shutil.copytree(source, target, copy_function=link_or_copy, dirs_exist_ok=True)
+
+
+def link_or_copy(source: str | Path, target: str | Path) -> None:
+    """Make ``target`` the file ``source``, by hard link where the file system can, else by copy."""
+    try:
+        os.link(source, target)
+    except OSError:
+        shutil.copy2(source, target)

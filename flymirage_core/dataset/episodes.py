@@ -6,31 +6,14 @@ from typing import Any
 
 import pyarrow as pa
 
-from flymirage_core.annotation.boxes import BoxMap, ObjectBox
-from flymirage_core.dataset.splits import Split, split_of
-from flymirage_core.language.prompts import Prompt, Prompts
-from flymirage_core.language.verdicts import GateResult, QualityVerdicts, Verdict
-from flymirage_core.navigation.task_sets import TaskSets
-from flymirage_core.navigation.trajectories import Flight, FlightReport, Trajectories
-from flymirage_core.rendering.frames import Frames
-from flymirage_core.scene.description import SceneDescription
+from flymirage_core.annotation.boxes import ObjectBox
+from flymirage_core.dataset.scene_products import SceneProducts, terms_of
+from flymirage_core.dataset.splits import Split, is_unseen_instruction, split_of
+from flymirage_core.language.prompts import Prompt
+from flymirage_core.language.verdicts import GateResult, Verdict
+from flymirage_core.navigation.trajectories import Flight, FlightReport
 
 Vector = tuple[float, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class SceneProducts:
-    """Everything that one scene gives to the data set. Videos stay on disk until a frame is asked for."""
-
-    scene: str
-    description: SceneDescription
-    boxes: BoxMap
-    task_sets: TaskSets
-    trajectories: Trajectories
-    frames: Frames
-    verdicts: QualityVerdicts
-    prompts: Prompts
-    data_versions: dict[str, str]  # asset name -> content hash
 
 
 @dataclass(frozen=True)
@@ -42,6 +25,7 @@ class Episode:
     category: str
     subcategory: str
     setting: str
+    seed: str
     split: Split
     flight_id: int
     set_index: int
@@ -64,36 +48,33 @@ class Episode:
     judge: str
     gates: tuple[GateResult, ...]
     report: FlightReport
-    licence: str
-    data_versions: dict[str, str]
+    licence: str  # others' terms on this episode
+    models: dict[str, str]  # asset name -> who made it
+    data_versions: dict[str, str]  # asset name -> content hash
+
+    @property
+    def training_prompts(self) -> tuple[Prompt, ...]:
+        """What a trainer may read: all of them, but in training without those that are held out."""
+        if self.split != "train":
+            return self.prompts
+        return tuple(p for p in self.prompts if not is_unseen_instruction(p.text))
+
+    @property
+    def held_out_prompts(self) -> tuple[Prompt, ...]:
+        """Instructions that no training episode carries, asked for a flight that training sees."""
+        return tuple(p for p in self.prompts if p not in self.training_prompts)
 
 
 def episodes_of(products: SceneProducts) -> Iterator[Episode]:
     """The scene's episodes in the order of flights. A kept flight without a prompt is none; it is counted elsewhere."""
     verdicts = {v.flight_id: v for v in products.verdicts}
-    licence = licence_of(products)
+    licence = terms_of(products)
     for flight in products.trajectories:
         verdict = verdicts.get(flight.flight_id)
         prompts = products.prompts.of_flight(flight.flight_id)
         if verdict is not None and verdict.keep and prompts:
             target = products.boxes.by_id(flight.object_id)
             yield _episode(products, flight, target, verdict, prompts, licence)
-
-
-def licence_of(products: SceneProducts) -> str:
-    """What others' terms lie on a scene's data; FlyMirage's own embedded parts put none.
-
-    Boxer is CC-BY-NC-4.0; an imported world keeps its owner's terms, a service's answer that service's.
-    """
-    terms = []
-    if any(box.annotator.startswith("boxer") for box in products.boxes):
-        terms.append("CC-BY-NC-4.0 (boxes by Boxer)")
-    provenance = products.description.provenance
-    if provenance.kind == "imported":
-        terms.append(f"the terms of the imported world {provenance.file_name}")
-    elif not provenance.writer.startswith("offline"):
-        terms.append(f"the terms of {provenance.writer}")
-    return "; ".join(terms) or "no third-party terms"
 
 
 def _episode(
@@ -105,13 +86,15 @@ def _episode(
     licence: str,
 ) -> Episode:
     description = products.description
+    lineage = products.lineage
     return Episode(
         episode_id=f"{products.scene}/{flight.flight_id:04d}",
         scene=products.scene,
         category=description.category,
         subcategory=description.subcategory,
         setting=description.setting,
-        split=split_of(products.scene, flight.set_index),
+        seed=lineage.seed or products.scene,
+        split=_split(products, flight, prompts),
         flight_id=flight.flight_id,
         set_index=flight.set_index,
         leg_index=flight.leg_index,
@@ -134,8 +117,18 @@ def _episode(
         gates=verdict.gates,
         report=flight.report,
         licence=licence,
+        models=dict(sorted(lineage.tools.items())),
         data_versions=dict(sorted(products.data_versions.items())),
     )
+
+
+def _split(products: SceneProducts, flight: Flight, prompts: tuple[Prompt, ...]) -> Split:
+    imported = products.description.provenance.kind == "imported"
+    subcategory = "" if imported else products.description.subcategory
+    split = split_of(products.scene, flight.set_index, subcategory)
+    if split == "train" and all(is_unseen_instruction(p.text) for p in prompts):
+        return "test_unseen_instruction"
+    return split
 
 
 def _vector(values: Any) -> Vector:
@@ -161,6 +154,7 @@ EPISODE_SCHEMA = pa.schema(
         ("category", pa.string()),
         ("subcategory", pa.string()),
         ("setting", pa.string()),
+        ("seed", pa.string()),
         ("split", pa.string()),
         ("flight_id", pa.int32()),
         ("set_index", pa.int32()),
@@ -184,6 +178,7 @@ EPISODE_SCHEMA = pa.schema(
         ("gates", pa.list_(_GATE)),
         ("report", _REPORT),
         ("licence", pa.string()),
+        ("models", pa.map_(pa.string(), pa.string())),
         ("data_versions", pa.map_(pa.string(), pa.string())),
     ]
 )
@@ -194,7 +189,8 @@ def episodes_table(episodes: tuple[Episode, ...]) -> pa.Table:
     rows = []
     for episode in episodes:
         prompts = [{"kind": p.kind, "text": p.text, "writer": p.writer} for p in episode.prompts]
-        rows.append({**asdict(episode), "prompts": prompts, "data_versions": list(episode.data_versions.items())})
+        maps = {name: list(getattr(episode, name).items()) for name in ("models", "data_versions")}
+        rows.append({**asdict(episode), "prompts": prompts, **maps})
     return pa.Table.from_pylist(rows, schema=EPISODE_SCHEMA)
 
 
@@ -212,6 +208,7 @@ def _episode_from(row: dict[str, Any]) -> Episode:
             "prompts": tuple(Prompt(row["flight_id"], **p) for p in row["prompts"]),
             "gates": tuple(GateResult(**g) for g in row["gates"]),
             "report": FlightReport(**row["report"]),
+            "models": dict(row["models"]),
             "data_versions": dict(row["data_versions"]),
         }
     )

@@ -1,44 +1,87 @@
-"""The export's self-test: what was written is read back, by its own conventions.json, and held against its sources."""
+"""The exports' self-test: what was written is read back, by its own conventions.json, and held against its sources."""
 
-from collections.abc import Iterable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial.transform import Rotation
+from numpy.typing import NDArray
 
-from flymirage_core.dataset.episodes import SceneProducts
+from flymirage_core.dataset.depth_geometry import camera_of, depth_disagreement
 from flymirage_core.dataset.flight_columns import poses_from_actions, wrapped
 from flymirage_core.dataset.lerobot_schema import RGB_KEY
 from flymirage_core.dataset.reader import EpisodeRecord, LeRobotFolder
+from flymirage_core.dataset.scene_products import SceneProducts
 from flymirage_core.errors import ProductError
-from flymirage_core.rendering.camera import Camera, Intrinsics
+from flymirage_core.rendering.camera import Camera
 from flymirage_core.rendering.frames import FlightFrames
 
 PIXEL_TOLERANCE = 1.0
 """Pixels between the target's centre seen by the exported pose and by the camera that took the picture."""
 POSE_TOLERANCE = 1e-3
 """Metres and radians by which poses rebuilt from float32 actions may drift over an episode."""
+DEPTH_TOLERANCE = 0.05
+"""Median share of the z-depth by which two frames' depths may disagree after re-projection; 1 % is usual."""
 
 
-def check_export(folder: Path, scenes: Iterable[SceneProducts]) -> int:
-    """Check every episode; returns in how many of them the target's centre lies in the last picture.
+class ExportedEpisode(NamedTuple):
+    """What an export says of an episode, in the terms that every format can be brought to."""
 
-    Raises `ProductError` if a pose rebuilt from the actions, or the target re-projected into the last frame, is not
-    where it was in the products, or if an episode's first picture is another's.
+    name: str
+    cameras: list[Camera]  # a frame
+    box_centre: NDArray[np.float64]  # (3,) the target's
+    depths: tuple[NDArray[np.uint16], NDArray[np.uint16]] | None  # of the first and the middle frame, mm
+
+
+def check_geometry(episode: ExportedEpisode, frames: FlightFrames) -> bool:
+    """Hold an exported episode against the frames it was made from; is the target's centre in the last picture?
+
+    The target's centre, projected by the exported cameras, must lie where the cameras that took the first and the
+    last picture have it; the depth of the first frame must agree with the middle one's over the exported poses.
+    Raises `ProductError` otherwise.
+    """
+    if len(episode.cameras) != len(frames):
+        raise ProductError(
+            f"export self-test: {episode.name} has {len(episode.cameras)} frames, expected {len(frames)}"
+        )
+    source = frames.cameras()
+    for index in (0, -1):
+        _check_view(episode, index, source[index])
+    if episode.depths is not None:
+        middle = len(frames) // 2
+        error = depth_disagreement(episode.depths[0], episode.cameras[0], episode.depths[1], episode.cameras[middle])
+        if error > DEPTH_TOLERANCE:  # NaN: the two share no point
+            raise ProductError(
+                f"export self-test: the depth of {episode.name} disagrees by {error:.1%} between frames 0 and "
+                f"{middle}, at most {DEPTH_TOLERANCE:.0%} is allowed: depth and poses differ"
+            )
+    (pixel,), (depth,) = episode.cameras[-1].project(episode.box_centre)
+    k = episode.cameras[-1].intrinsics
+    return bool(depth > 0 and 0 <= pixel[0] < k.width and 0 <= pixel[1] < k.height)
+
+
+def check_lerobot(folder: Path, products: SceneProducts) -> int:
+    """Check every episode of one scene; returns in how many of them the target's centre lies in the last picture.
+
+    Raises `ProductError` if a pose rebuilt from the actions, the target re-projected into the first or last frame, or
+    the depth seen from another frame is not where it was, or if an episode's first picture is another's.
     """
     export = LeRobotFolder(folder)
-    products = {p.scene: p for p in scenes}
-    return sum(_check_episode(export, episode, products[episode.scene]) for episode in export.episodes)
+    return sum(_check_episode(export, e, products) for e in export.episodes if e.scene == products.scene)
 
 
 def _check_episode(export: LeRobotFolder, episode: EpisodeRecord, products: SceneProducts) -> bool:
-    columns = export.columns(episode.index, ("observation.state", "action", "sim.yaw", "timestamp"))
+    columns = export.columns(episode.index, ("observation.state", "action", "sim.yaw"))
     state, action, yaw = (columns[k].astype(np.float64) for k in ("observation.state", "action", "sim.yaw"))
     _check_actions(episode, state, action, yaw)
     frames = products.frames.flight(episode.flight_id)
     _check_first_picture(export, episode, frames)
-    return _check_last_view(episode, _camera_of(state[-1], export.camera(episode.scene)), frames.cameras()[-1])
+    described = export.camera(episode.scene)
+    wanted = (0, len(frames) // 2)
+    depths = [d for i, d in enumerate(export.depth(episode.index)) if i in wanted]
+    pair = (depths[0], depths[-1]) if depths else None
+    cameras = [camera_of(row, described) for row in state]
+    centre = np.array(episode.row["flymirage/box_centre"])
+    return check_geometry(ExportedEpisode(f"episode {episode.index} ({_name(episode)})", cameras, centre, pair), frames)
 
 
 def _check_actions(episode: EpisodeRecord, state: Any, action: Any, yaw: Any) -> None:
@@ -62,29 +105,21 @@ def _check_first_picture(export: LeRobotFolder, episode: EpisodeRecord, frames: 
         )
 
 
-def _check_last_view(episode: EpisodeRecord, exported: Camera, source: Camera) -> bool:
-    """Whether the target's centre is in the picture; both cameras must see it at the same pixel, and before them."""
-    target = np.array(episode.row["flymirage/box_centre"])
-    (pixel,), (depth,) = exported.project(target)
-    (expected,), _ = source.project(target)
-    error = float(np.linalg.norm(pixel - expected))
-    if not (depth > 0 and error <= PIXEL_TOLERANCE):
+def _check_view(episode: ExportedEpisode, index: int, source: Camera) -> None:
+    """Both cameras must see the target's centre at the same pixel; or both have it behind them."""
+    (pixel,), (depth,) = episode.cameras[index].project(episode.box_centre)
+    (expected,), (expected_depth,) = source.project(episode.box_centre)
+    if depth <= 0 and expected_depth <= 0:
+        same = bool(abs(depth - expected_depth) < 0.01)
+    else:
+        same = bool(np.linalg.norm(pixel - expected) <= PIXEL_TOLERANCE)  # NaN, one behind: not the same
+    if not same or (index == -1 and depth <= 0):
+        which = "first" if index == 0 else "last"
         raise ProductError(
-            f"export self-test: the target of episode {episode.index} ({_name(episode)}) projects "
-            f"{error:.1f} pixels from where its last picture has it (z-depth {depth:.2f} m): poses and pictures differ"
+            f"export self-test: the target of {episode.name} projects {np.linalg.norm(pixel - expected):.1f} pixels "
+            f"from where its {which} picture has it (z-depth {depth:.2f} m): poses and pictures differ"
         )
-    k = exported.intrinsics
-    return bool(0 <= pixel[0] < k.width and 0 <= pixel[1] < k.height)
 
 
 def _name(episode: EpisodeRecord) -> str:
     return f"{episode.scene}/{episode.flight_id:04d}"
-
-
-def _camera_of(state: Any, camera: dict[str, Any]) -> Camera:
-    """The camera that conventions.json and a row of the state (13,) describe."""
-    body = np.eye(4)
-    body[:3, :3], body[:3, 3] = Rotation.from_quat(state[3:7]).as_matrix(), state[:3]
-    (fx, _, cx), (_, fy, cy), _ = camera["K"]
-    intrinsics = Intrinsics(camera["width"], camera["height"], fx, fy, cx, cy)
-    return Camera(intrinsics, body @ np.array(camera["T_body_camera"]))

@@ -1,27 +1,42 @@
 """The data set as a LeRobot v3.0 folder, written by hand with pyarrow and PyAV: one episode a flight.
 
-RGB goes into mp4 files by copying packets, depth losslessly as 16-bit PNG into the tables. The folder appears under its
-name only when it is whole and has passed the self-test.
+RGB goes into mp4 files by copying packets, depth losslessly as 16-bit PNG into the tables. A scene has data, video and
+episode files of its own; adding a scene adds files, and writes meta/info.json, stats.json and tasks.parquet anew.
 """
 
-import json
-import shutil
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
-from flymirage_core.dataset.card import HUB_HEADER
-from flymirage_core.dataset.column_stats import numeric_stats
-from flymirage_core.dataset.conventions import conventions, lerobot_conventions
-from flymirage_core.dataset.episodes import Episode, SceneProducts, episodes_of
-from flymirage_core.dataset.export_check import check_export
+from flymirage_core.dataset.card import hub_header
+from flymirage_core.dataset.conventions import lerobot_conventions
+from flymirage_core.dataset.episodes import Episode
+from flymirage_core.dataset.export_check import check_lerobot
+from flymirage_core.dataset.export_folder import (
+    ExportReport,
+    Placed,
+    Shard,
+    common_files,
+    export,
+    link_files,
+    write_json,
+)
 from flymirage_core.dataset.lerobot_files import EpisodeWriter
+from flymirage_core.dataset.lerobot_places import (
+    all_tasks,
+    empty_place,
+    move_shard,
+    moved_place,
+    split_ranges,
+    start_after,
+)
 from flymirage_core.dataset.lerobot_schema import INDEX_COLUMNS, features, info, modality, write_tasks
-from flymirage_core.dataset.manifest import build_manifest
+from flymirage_core.dataset.lerobot_stats import joint_statistics
+from flymirage_core.dataset.scene_products import SceneProducts, SceneSource
 from flymirage_core.dataset.splits import SPLITS
+from flymirage_core.dataset.statistics import SceneShare
 from flymirage_core.errors import InputError
 from flymirage_core.rendering.frames import CameraRig
 
@@ -34,141 +49,83 @@ class DepthExport(Enum):
     NONE = "none"
 
 
-@dataclass(frozen=True)
-class ExportReport:
-    """What was written."""
+def export_lerobot(scenes: Iterable[SceneSource], folder: Path, depth: DepthExport = DepthExport.PNG16) -> ExportReport:
+    """Make ``folder`` a LeRobot v3.0 data set of exactly these scenes; see `export_folder.export` for what is reused.
 
-    folder: Path
-    episodes: int
-    frames: int
-    tasks: int
-    splits: dict[str, int]
-    bytes_by_kind: dict[str, int]  # data, videos, meta
-    targets_in_last_picture: int  # episodes whose target's centre projects into their last frame
-
-    def summary(self) -> dict[str, str | int | float]:
-        sizes = {f"{kind}_mb": round(size / 1e6, 2) for kind, size in self.bytes_by_kind.items()}
-        splits = {f"{split}_episodes": count for split, count in self.splits.items()}
-        return {
-            "episodes": self.episodes,
-            "frames": self.frames,
-            "tasks": self.tasks,
-            "targets_in_last_picture": self.targets_in_last_picture,
-            **splits,
-            **sizes,
-        }
-
-
-def export_lerobot(
-    scenes: Iterable[SceneProducts], folder: Path, depth: DepthExport = DepthExport.PNG16
-) -> ExportReport:
-    """Write all episodes to ``folder``, which is replaced if it is an earlier export.
-
-    Episodes come in the order of splits, then scenes, then flights, so that each split is one range of episodes.
     Raises `InputError` if there is no episode, if cameras differ, or if ``folder`` holds something else; `ProductError`
     if a product is torn, or the written folder does not pass the self-test.
     """
-    scenes = tuple(scenes)
-    manifest = build_manifest(scenes)
-    if not manifest.episodes:
-        counts = manifest.statistics
-        raise InputError(
-            f"there is nothing to export: {counts.flights} flights in {counts.scenes} scenes, {counts.dropped} dropped "
-            f"by the verdict, {counts.kept_without_prompts} kept without an unambiguous prompt"
-        )
-    rig = _common_rig(scenes)
-    described = features(rig, depth is DepthExport.PNG16)
-    for products in scenes:
-        products.frames.check()
-    with _appearing_whole(folder) as partial:
-        splits: dict[str, int] = {}
-        with EpisodeWriter(partial, rig, described) as writer:
-            for split, products, episode in _ordered(scenes):
-                writer.add(products, episode)
-                splits[split] = splits.get(split, 0) + 1
-        _write_meta(partial, writer, described, splits, rig)
-        _write_json(partial / "conventions.json", {**_conventions(scenes), "lerobot": lerobot_conventions()})
-        _write_json(partial / "statistics.json", manifest.statistics.as_dict())
-        (partial / "README.md").write_text(HUB_HEADER + manifest.card())
-        in_picture = check_export(partial, scenes)
-    sizes = {kind: _size(folder / kind) for kind in ("data", "videos", "meta")}
-    return ExportReport(folder, len(writer.rows), writer.frames, len(writer.tasks), splits, sizes, in_picture)
+    return export(LeRobotFormat(depth), scenes, folder)
 
 
-def _ordered(scenes: tuple[SceneProducts, ...]) -> Iterator[tuple[str, SceneProducts, Episode]]:
-    for split in SPLITS:
-        for products in scenes:
-            yield from ((split, products, e) for e in episodes_of(products) if e.split == split)
+@dataclass(frozen=True)
+class LeRobotFormat:
+    """LeRobot v3.0. A scene's place: its first episode, frame and files in the whole, and its own counts."""
 
+    depth: DepthExport = DepthExport.PNG16
+    name: str = "lerobot"
 
-def _common_rig(scenes: tuple[SceneProducts, ...]) -> CameraRig:
-    """The one picture size and whole frame rate of all scenes with episodes."""
-    rigs = {p.scene: p.frames.rig for p in scenes if any(episodes_of(p))}
-    (first_scene, first), *others = rigs.items()
-    if not float(first.frame_rate).is_integer():
-        raise InputError(
-            f"scene {first_scene} was filmed at {first.frame_rate:g} Hz, but LeRobot takes whole frame rates only; "
-            "set frames.rate to a whole number and materialise `frames` again"
-        )
-    for scene, rig in others:
-        if _film(rig) != _film(first):
+    @property
+    def options(self) -> dict[str, Any]:
+        return {"depth": self.depth.value}
+
+    def admit(self, rigs: Iterable[tuple[str, CameraRig]]) -> None:
+        """One picture size and one whole frame rate in all scenes."""
+        (first_scene, first), *others = rigs
+        if not float(first.frame_rate).is_integer():
             raise InputError(
-                f"scene {scene} was filmed at {_film(rig)} and {first_scene} at {_film(first)}, but one LeRobot folder "
-                "holds one size and rate; export them apart, or materialise `frames` of one of them again"
+                f"scene {first_scene} was filmed at {first.frame_rate:g} Hz, but LeRobot takes whole frame rates only; "
+                "set frames.rate to a whole number and materialise `frames` again"
             )
-    return first
+        for scene, rig in others:
+            if _film(rig) != _film(first):
+                raise InputError(
+                    f"scene {scene} was filmed at {_film(rig)} and {first_scene} at {_film(first)}, but one LeRobot "
+                    "folder holds one size and rate; export them apart, or materialise `frames` of one of them again"
+                )
+
+    def write(
+        self, folder: Path, products: SceneProducts, episodes: tuple[Episode, ...], before: list[Shard]
+    ) -> Placed:
+        start = start_after(before)
+        if not episodes:
+            return Placed(empty_place(start), [])
+        described = self._features(products.frames.rig)
+        with EpisodeWriter(folder, products.frames.rig, described, start) as writer:
+            for episode in sorted(episodes, key=lambda e: (SPLITS.index(e.split), e.flight_id)):
+                writer.add(products, episode)
+        return writer.finish(products.scene)
+
+    def keep(self, source: Path, folder: Path, shard: Shard, before: list[Shard]) -> Placed:
+        place = moved_place(shard.place, start_after(before))
+        if place == shard.place:
+            names = [n for n in shard.files if n not in common_files(shard.scene)]
+            link_files(source, folder, names)
+            return Placed(place, names)
+        return Placed(place, move_shard(source, folder, shard, place, self._features(shard.rig)))
+
+    def finish(self, folder: Path, shards: list[Shard]) -> dict[str, Any]:
+        filled = [s for s in shards if s.place["episodes"]]
+        described = self._features(filled[0].rig)
+        tasks = all_tasks(filled)
+        counts = (sum(s.place["episodes"] for s in filled), sum(s.place["frames"] for s in filled), len(tasks))
+        meta = folder / "meta"
+        write_json(meta / "info.json", info(described, round(filled[0].rig.frame_rate), *counts, split_ranges(filled)))
+        write_json(meta / "modality.json", modality())
+        order = [n for n in described if n not in INDEX_COLUMNS] + list(INDEX_COLUMNS)
+        write_json(meta / "stats.json", joint_statistics(folder, filled, order))
+        write_tasks(tasks, meta / "tasks.parquet")
+        return {"lerobot": lerobot_conventions()}
+
+    def header(self, shares: tuple[SceneShare, ...]) -> str:
+        return hub_header(shares)
+
+    def check(self, folder: Path, products: SceneProducts) -> int:
+        return check_lerobot(folder, products)
+
+    def _features(self, rig: CameraRig) -> dict[str, Any]:
+        return features(rig, self.depth is DepthExport.PNG16)
 
 
 def _film(rig: CameraRig) -> str:
     return f"{rig.intrinsics.width}x{rig.intrinsics.height}, {rig.frame_rate:g} Hz"
-
-
-def _conventions(scenes: tuple[SceneProducts, ...]) -> dict[str, Any]:
-    return conventions((p.scene, p.frames.rig) for p in scenes)
-
-
-def _write_meta(
-    folder: Path, writer: EpisodeWriter, described: dict[str, Any], splits: dict[str, int], rig: CameraRig
-) -> None:
-    ranges, first = {}, 0
-    for split, count in splits.items():
-        ranges[split], first = f"{first}:{first + count}", first + count
-    counts = (len(writer.rows), writer.frames, len(writer.tasks))
-    meta = folder / "meta"
-    _write_json(meta / "info.json", info(described, round(rig.frame_rate), *counts, ranges))
-    _write_json(meta / "modality.json", modality())
-    numbers = {name: numeric_stats(values) for name, values in writer.numbers().items()}
-    pictures = {name: counts.stats() for name, counts in writer.pictures.items()}
-    order = [n for n in described if n not in INDEX_COLUMNS] + list(INDEX_COLUMNS)
-    _write_json(meta / "stats.json", {name: {**numbers, **pictures}[name] for name in order})
-    write_tasks(writer.tasks, meta / "tasks.parquet")
-    writer.write_episodes(meta)
-
-
-@contextmanager
-def _appearing_whole(folder: Path) -> Iterator[Path]:
-    """A hidden folder beside ``folder`` that takes its name when the block ends well, and is removed otherwise."""
-    folder = folder.absolute()
-    if folder.exists() and not (folder / "meta" / "info.json").exists() and any(folder.iterdir()):
-        raise InputError(f"{folder} is not empty and no LeRobot export; choose another folder, or empty this one")
-    partial, previous = folder.with_name(f".{folder.name}.partial"), folder.with_name(f".{folder.name}.previous")
-    for leftover in (partial, previous):
-        shutil.rmtree(leftover, ignore_errors=True)
-    partial.mkdir(parents=True)
-    try:
-        yield partial
-        if folder.exists():
-            folder.rename(previous)
-        partial.rename(folder)
-    finally:
-        shutil.rmtree(partial, ignore_errors=True)
-    shutil.rmtree(previous, ignore_errors=True)
-
-
-def _size(folder: Path) -> int:
-    return sum(p.stat().st_size for p in folder.rglob("*") if p.is_file())
-
-
-def _write_json(path: Path, value: Any) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps(value, indent=2) + "\n")

@@ -1,4 +1,4 @@
-"""Writing episodes into LeRobot's data and video files, one at a time; metadata is gathered on the way."""
+"""Writing a scene's episodes into LeRobot's data, video and episode files, one at a time."""
 
 from pathlib import Path
 from types import TracebackType
@@ -11,19 +11,32 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from flymirage_core.dataset.column_stats import PictureCounts, numeric_stats
-from flymirage_core.dataset.episodes import Episode, SceneProducts
+from flymirage_core.dataset.episodes import Episode
+from flymirage_core.dataset.export_folder import Placed, shard_folder
 from flymirage_core.dataset.flight_columns import flight_columns
+from flymirage_core.dataset.lerobot_places import (
+    Start,
+    data_path,
+    episodes_path,
+    files_at,
+    index_row,
+    place_at,
+    placed_columns,
+    task_indices,
+)
 from flymirage_core.dataset.lerobot_schema import (
     CHUNKS_SIZE,
     DATA_FILES_MB,
-    DATA_PATH,
     DEPTH_KEY,
-    EPISODES_PATH,
     PNG,
+    REPORTED,
     RGB_KEY,
+    VIDEO_COLUMNS,
     data_schema,
     episode_schema,
 )
+from flymirage_core.dataset.lerobot_stats import save_sketch
+from flymirage_core.dataset.scene_products import SceneProducts
 from flymirage_core.dataset.video_join import VideoJoiner, VideoSpan
 from flymirage_core.errors import ProductError
 from flymirage_core.rendering.frames import CameraRig, FlightFrames
@@ -35,19 +48,18 @@ PNG_COMPRESSION = 1
 
 
 class EpisodeWriter:
-    """Appends episodes to data and video files, and keeps what the metadata needs; a context manager."""
+    """Writes a scene's episodes into data and video files of its own; a context manager, then `finish`."""
 
-    def __init__(self, folder: Path, rig: CameraRig, described: dict[str, Any]) -> None:
-        self.rows: list[dict[str, Any]] = []
-        self.tasks: list[str] = []
-        self.frames = 0
-        self.pictures: dict[str, PictureCounts] = {}
-        self._numbers: list[dict[str, NDArray[Any]]] = []
-        self._task_of: dict[str, int] = {}
-        self._described = described
+    def __init__(self, folder: Path, rig: CameraRig, described: dict[str, Any], start: Start) -> None:
+        self._folder, self._described, self._start = folder, described, start
         self._rate = round(rig.frame_rate)
-        self._videos = VideoJoiner(folder / "videos" / RGB_KEY, self._rate)
-        self._data = DataFiles(folder, data_schema(described))
+        self._rows: list[dict[str, Any]] = []
+        self._tasks: list[str] = []  # the scene's own
+        self._task_of: list[int] = []
+        self._numbers: list[dict[str, NDArray[Any]]] = []
+        self._pictures: dict[str, PictureCounts] = {}
+        self._videos = VideoJoiner(folder / "videos" / RGB_KEY, self._rate, start.first_video_file)
+        self._data = DataFiles(folder, data_schema(described), start.first_data_file)
 
     def __enter__(self) -> "EpisodeWriter":
         return self
@@ -62,11 +74,13 @@ class EpisodeWriter:
         """Write one flight's frames, and note its row of meta/episodes."""
         flight = next(f for f in products.trajectories if f.flight_id == episode.flight_id)
         frames = products.frames.flight(episode.flight_id)
-        texts = [p.text for p in episode.prompts]
+        texts = [p.text for p in episode.training_prompts]
         task = texts[episode.flight_id % len(texts)]
+        self._tasks += [text for text in dict.fromkeys(texts) if text not in self._tasks]
+        self._task_of.append(self._tasks.index(task))
         numbers: dict[str, NDArray[Any]] = {
             **flight_columns(flight, frames, products.boxes.by_id(episode.object_id)),
-            **self._index_columns(len(frames), [self._task_index(text) for text in texts][texts.index(task)]),
+            **self._index_columns(len(frames)),
         }
         pictures = {RGB_KEY: _counted_rgb(frames)}
         pngs: list[bytes] = []
@@ -76,32 +90,33 @@ class EpisodeWriter:
         place = self._data.append(numbers, {DEPTH_KEY: pngs} if pngs else {})
         self._note(episode, [task, *(t for t in texts if t != task)], place, video, numbers, pictures)
 
-    def numbers(self) -> dict[str, NDArray[Any]]:
-        """All numeric columns over all frames, each (N, n)."""
-        return {name: np.concatenate([n[name] for n in self._numbers]) for name in self._numbers[0]}
-
-    def write_episodes(self, meta: Path) -> None:
-        """meta/episodes, in one file: a row is a few kilobytes."""
-        path = meta.parent / EPISODES_PATH.format(chunk_index=0, file_index=0)
+    def finish(self, scene: str) -> Placed:
+        """Write the scene's rows of meta/episodes and its statistics."""
+        place = place_at(
+            self._start,
+            [row["length"] for row in self._rows],
+            self._data.count,
+            self._videos.count,
+            self._tasks,
+            self._task_of,
+        )
+        path = self._folder / episodes_path(self._start.episode_file)
         path.parent.mkdir(parents=True, exist_ok=True)
-        pq.write_table(pa.Table.from_pylist(self.rows, schema=episode_schema(self._described)), path)
+        pq.write_table(pa.Table.from_pylist(self._rows, schema=episode_schema(self._described)), path)
+        columns = {name: np.concatenate([n[name] for n in self._numbers]) for name in self._numbers[0]}
+        save_sketch(shard_folder(self._folder, scene), columns, self._pictures)
+        return Placed(place, files_at(scene, place))
 
-    def _index_columns(self, length: int, task_index: int) -> dict[str, NDArray[Any]]:
+    def _index_columns(self, length: int) -> dict[str, NDArray[Any]]:
         frame = np.arange(length, dtype=np.int64)[:, None]  # (F, 1)
+        task = task_indices(self._start.tasks, self._tasks)[self._task_of[-1]]
+        first = self._start.first_frame + sum(row["length"] for row in self._rows)
         return {
             "next.done": frame == length - 1,
             "timestamp": (frame / self._rate).astype(np.float32),
             "frame_index": frame,
-            "episode_index": np.full_like(frame, len(self.rows)),
-            "index": frame + self.frames,
-            "task_index": np.full_like(frame, task_index),
+            **placed_columns(self._start.first_episode + len(self._rows), first, length, task),
         }
-
-    def _task_index(self, text: str) -> int:
-        if text not in self._task_of:
-            self._task_of[text] = len(self.tasks)
-            self.tasks.append(text)
-        return self._task_of[text]
 
     def _note(
         self,
@@ -112,36 +127,34 @@ class EpisodeWriter:
         numbers: dict[str, NDArray[Any]],
         pictures: dict[str, PictureCounts],
     ) -> None:
-        length = len(numbers["index"])
         stats = {n: numeric_stats(v) for n, v in numbers.items()} | {n: c.stats() for n, c in pictures.items()}
-        self.rows.append(
+        chunk, file = divmod(self._start.episode_file, CHUNKS_SIZE)
+        self._rows.append(
             {
-                "episode_index": len(self.rows),
+                **index_row(int(numbers["episode_index"][0, 0]), int(numbers["index"][0, 0]), len(numbers["index"])),
                 "tasks": tasks,
-                "length": length,
+                "length": len(numbers["index"]),
                 "data/chunk_index": place[0],
                 "data/file_index": place[1],
-                "dataset_from_index": self.frames,
-                "dataset_to_index": self.frames + length,
-                **{f"videos/{RGB_KEY}/{name}": value for name, value in video._asdict().items()},
-                "meta/episodes/chunk_index": 0,
-                "meta/episodes/file_index": 0,
+                **{f"videos/{RGB_KEY}/{name}": getattr(video, name) for name in VIDEO_COLUMNS},
+                "flymirage/rgb_crc32": video.crc32,
+                "meta/episodes/chunk_index": chunk,
+                "meta/episodes/file_index": file,
                 **_own_columns(episode),
                 **{f"stats/{n}/{s}": value for n, values in stats.items() for s, value in values.items()},
             }
         )
-        self.frames += length
         self._numbers.append(numbers)
         for name, counts in pictures.items():
-            self.pictures[name] = self.pictures[name] + counts if name in self.pictures else counts
+            self._pictures[name] = self._pictures[name] + counts if name in self._pictures else counts
 
 
 class DataFiles:
-    """``data/chunk-000/file-000.parquet`` and its successors; an episode is one row group, never cut in two."""
+    """Data files from number ``first`` on; an episode is one row group, never cut in two."""
 
-    def __init__(self, folder: Path, schema: pa.Schema, max_bytes: int = DATA_FILES_MB * 2**20) -> None:
-        self._folder, self._schema, self._max_bytes = folder, schema, max_bytes
-        self._number, self._bytes = -1, 0
+    def __init__(self, folder: Path, schema: pa.Schema, first: int = 0, max_bytes: int = DATA_FILES_MB * 2**20) -> None:
+        self._folder, self._schema, self._first, self._max_bytes = folder, schema, first, max_bytes
+        self._number, self._bytes = first - 1, 0
         self._writer: pq.ParquetWriter | None = None
 
     def append(self, numbers: dict[str, NDArray[Any]], pngs: dict[str, list[bytes]]) -> tuple[int, int]:
@@ -158,6 +171,10 @@ class DataFiles:
         chunk, file = divmod(self._number, CHUNKS_SIZE)
         return chunk, file
 
+    @property
+    def count(self) -> int:
+        return self._number - self._first + 1
+
     def close(self) -> None:
         if self._writer is not None:
             self._writer.close()
@@ -166,8 +183,7 @@ class DataFiles:
     def _open_next(self) -> None:
         self.close()
         self._number, self._bytes = self._number + 1, 0
-        chunk, file = divmod(self._number, CHUNKS_SIZE)
-        path = self._folder / DATA_PATH.format(chunk_index=chunk, file_index=file)
+        path = self._folder / data_path(self._number)
         path.parent.mkdir(parents=True, exist_ok=True)
         # Dictionaries are of no use to PNGs and to floats that hardly repeat.
         self._writer = pq.ParquetWriter(path, self._schema, use_dictionary=False)
@@ -177,14 +193,21 @@ def _own_columns(episode: Episode) -> dict[str, Any]:
     return {
         "flymirage/episode_id": episode.episode_id,
         "flymirage/scene": episode.scene,
+        "flymirage/category": episode.category,
         "flymirage/flight_id": episode.flight_id,
+        "flymirage/set_index": episode.set_index,
+        "flymirage/leg_index": episode.leg_index,
         "flymirage/split": episode.split,
+        "flymirage/object_id": episode.object_id,
         "flymirage/object_label": episode.object_label,
         "flymirage/box_centre": episode.box_centre,
         "flymirage/box_size": episode.box_size,
         "flymirage/box_yaw": episode.box_yaw,
         "flymirage/prompts": [p.text for p in episode.prompts],
         "flymirage/prompt_kinds": [p.kind for p in episode.prompts],
+        "flymirage/held_out_prompts": [p.text for p in episode.held_out_prompts],
+        "flymirage/licence": episode.licence,
+        **{f"flymirage/{name}": getattr(episode.report, name) for name in REPORTED},
     }
 
 

@@ -23,6 +23,10 @@ CHUNKS_SIZE = 1000
 DATA_FILES_MB = 100
 VIDEO_FILES_MB = 200
 
+VIDEO_COLUMNS = ("chunk_index", "file_index", "from_timestamp", "to_timestamp")
+REPORTED = ("length", "max_speed", "max_acceleration", "max_body_rate", "max_yaw_rate", "min_clearance")
+"""What an episode's row says of its feasibility; all else of the report is in scenes/<scene>/episodes.parquet."""
+
 INDEX_COLUMNS = {
     "timestamp": "float32",
     "frame_index": "int64",
@@ -79,7 +83,7 @@ def data_schema(described: dict[str, Any]) -> pa.Schema:
 
 
 def info(described: dict[str, Any], fps: int, episodes: int, frames: int, tasks: int, splits: dict[str, str]) -> Any:
-    """meta/info.json; ``splits`` are ranges of episodes, "train": "0:24"."""
+    """meta/info.json; ``splits`` are ranges of episodes, "train": "0:24,30:40"."""
     return {
         "codebase_version": CODEBASE_VERSION,
         "robot_type": ROBOT_TYPE,
@@ -133,14 +137,22 @@ def episode_schema(described: dict[str, Any]) -> pa.Schema:
         ("meta/episodes/file_index", pa.int64()),
         ("flymirage/episode_id", pa.string()),
         ("flymirage/scene", pa.string()),
+        ("flymirage/category", pa.string()),
         ("flymirage/flight_id", pa.int64()),
+        ("flymirage/set_index", pa.int64()),
+        ("flymirage/leg_index", pa.int64()),
         ("flymirage/split", pa.string()),
+        ("flymirage/object_id", pa.int64()),
         ("flymirage/object_label", pa.string()),
         ("flymirage/box_centre", pa.list_(pa.float64(), 3)),
         ("flymirage/box_size", pa.list_(pa.float64(), 3)),
         ("flymirage/box_yaw", pa.float64()),
         ("flymirage/prompts", pa.list_(pa.string())),
         ("flymirage/prompt_kinds", pa.list_(pa.string())),
+        ("flymirage/held_out_prompts", pa.list_(pa.string())),
+        ("flymirage/licence", pa.string()),
+        ("flymirage/rgb_crc32", pa.int64()),  # of the episode's video packets
+        *((f"flymirage/{name}", pa.float64()) for name in REPORTED),
     ]
     for name, feature in described.items():
         pictures = feature["dtype"] in ("video", "image")

@@ -1,5 +1,6 @@
 """Many flights' H.264 videos in few mp4 files: packets are copied, nothing is encoded a second time."""
 
+import zlib
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
@@ -23,14 +24,15 @@ class VideoSpan(NamedTuple):
     file_index: int
     from_timestamp: float  # seconds: exactly n / fps
     to_timestamp: float
+    crc32: int  # of the episode's packets, in order
 
 
 class VideoJoiner:
-    """Appends videos to ``chunk-000/file-000.mp4`` and its successors under a folder; a context manager."""
+    """Appends videos to files ``chunk-CCC/file-NNN.mp4`` under a folder, from number ``first`` on."""
 
-    def __init__(self, folder: Path, frame_rate: int, max_bytes: int = MAX_VIDEO_BYTES) -> None:
-        self._folder, self._rate, self._max_bytes = folder, frame_rate, max_bytes
-        self._number = -1  # of the current file, over all chunks
+    def __init__(self, folder: Path, frame_rate: int, first: int = 0, max_bytes: int = MAX_VIDEO_BYTES) -> None:
+        self._folder, self._rate, self._first, self._max_bytes = folder, frame_rate, first, max_bytes
+        self._number = first - 1  # of the current file, over all chunks
         self._output: Any = None
         self._stream: Any = None
         self._frames = self._bytes = 0
@@ -43,6 +45,10 @@ class VideoJoiner:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._close()
+
+    @property
+    def count(self) -> int:
+        return self._number - self._first + 1
 
     def append(self, video: Path, frame_count: int) -> VideoSpan:
         """Copy a whole video behind the last; its first frame must be a key frame, as in every file of its own.
@@ -62,15 +68,17 @@ class VideoJoiner:
             packets = [p for p in source.demux(stream) if p.pts is not None]
             pts, dts = self._frame_numbers(video, packets, frame_count)
             self._make_room(stream)
+            crc = 0
             for packet, shown, decoded in zip(packets, pts, dts, strict=True):
                 packet.stream = self._stream
                 packet.time_base = Fraction(1, self._rate)
                 packet.pts, packet.dts, packet.duration = self._frames + shown, self._frames + decoded, 1
                 self._bytes += packet.size
+                crc = zlib.crc32(bytes(packet), crc)
                 self._output.mux(packet)
         first, self._frames = self._frames, self._frames + frame_count
         chunk, file = divmod(self._number, CHUNK_SIZE)
-        return VideoSpan(chunk, file, first / self._rate, self._frames / self._rate)
+        return VideoSpan(chunk, file, first / self._rate, self._frames / self._rate, crc)
 
     def _frame_numbers(self, video: Path, packets: list[Any], frame_count: int) -> tuple[list[int], list[int]]:
         """Presentation and decoding order of the packets in whole frames from 0."""

@@ -3,21 +3,25 @@
 import json
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 import numpy as np
 import pytest
 from filmed_room import renamed, scene_products
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from flymirage_core.dataset.episodes import SceneProducts, episodes_of, licence_of
+from flymirage_core.dataset.card import hub_header
+from flymirage_core.dataset.episodes import episodes_of
 from flymirage_core.dataset.manifest import DatasetManifest, build_manifest
-from flymirage_core.dataset.splits import SPLITS, split_of
+from flymirage_core.dataset.scene_products import SceneLineage, SceneProducts, terms_of
+from flymirage_core.dataset.splits import SPLITS, is_unseen_instruction, split_of
 from flymirage_core.dataset.statistics import length_bin_names, length_histogram
 from flymirage_core.errors import ProductError
 from flymirage_core.language.prompts import Prompts
 from flymirage_core.language.verdicts import QualityVerdicts
 from flymirage_core.scene.description import Provenance
+from flymirage_core.scene.taxonomy import standard_taxonomy
 
 PUBLISHED = {
     "cafe": ["val_seen", "train", "train", "train", "train", "val_seen"],
@@ -36,6 +40,14 @@ PUBLISHED = {
         "train",
     ],
 }
+
+
+KEYS = st.from_regex(r"[a-z0-9][a-z0-9_-]{0,20}", fullmatch=True)
+
+
+def in_place(products: SceneProducts, kind: str) -> SceneProducts:
+    """The same scene as another kind of place."""
+    return replace(products, description=products.description.model_copy(update={"subcategory": kind}))
 
 
 @pytest.fixture(scope="module")
@@ -74,22 +86,64 @@ class TestEpisodes:
         assert "1 kept ones have no unambiguous instruction" in manifest.card()
 
     def test_terms_name_who_imposes_them(self, cafe: SceneProducts) -> None:
-        assert licence_of(cafe) == "no third-party terms"
+        assert terms_of(cafe) == "no third-party terms"
         imported = Provenance(kind="imported", writer="import", file_name="flat.spz")
         described = cafe.description.model_copy(update={"provenance": imported})
-        assert "flat.spz" in licence_of(replace(cafe, description=described))
+        assert "flat.spz" in terms_of(replace(cafe, description=described))
         boxes = replace(cafe.boxes, boxes=tuple(replace(b, annotator="boxer d364743") for b in cafe.boxes))
-        assert "CC-BY-NC-4.0" in licence_of(replace(cafe, boxes=boxes))
+        assert "CC-BY-NC-4.0" in terms_of(replace(cafe, boxes=boxes))
+        paid = SceneLineage(tools={"world": "marble 1.2", "boxes": "embedded 3"})
+        assert terms_of(replace(cafe, lineage=paid)) == "the terms of marble 1.2"
+
+    def test_non_commercial_terms_reach_the_card_and_its_header(self, cafe: SceneProducts) -> None:
+        boxes = replace(cafe.boxes, boxes=tuple(replace(b, annotator="boxer d364743") for b in cafe.boxes))
+        manifest = build_manifest([cafe, replace(renamed(cafe, "hall"), boxes=boxes)])
+        assert "| CC-BY-NC-4.0, non-commercial (boxes by Boxer) | 3 |" in manifest.card()
+        assert "license: cc-by-nc-4.0" in hub_header(manifest.scenes)
+        assert "cc-by-nc" not in hub_header(manifest.scenes[:1])
 
 
 class TestSplits:
-    @given(st.lists(st.from_regex(r"[a-z0-9][a-z0-9_-]{0,20}", fullmatch=True), min_size=2, max_size=30, unique=True))
-    def test_growth_never_reassigns_a_scene(self, scenes: list[str]) -> None:
-        def assigned(some: list[str]) -> dict[tuple[str, int], str]:
-            return {(scene, index): split_of(scene, index) for scene in some for index in range(3)}
+    @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+    @given(
+        st.lists(
+            st.tuples(KEYS, st.sampled_from(["bakery", "wine bar", "attic"])), min_size=2, max_size=6, unique=True
+        ),
+        st.randoms(use_true_random=False),
+    )
+    def test_growth_never_reassigns_an_episode_or_an_instruction(
+        self, cafe: SceneProducts, scenes: list[tuple[str, str]], chance: Random
+    ) -> None:
+        """However a data set grows, in whatever order: what was published stays where it was."""
 
-        early, late = assigned(scenes[:-1]), assigned(scenes[::-1])
-        assert early.items() <= late.items()
+        def assigned(some: list[tuple[str, str]]) -> dict[str, tuple[str, tuple[str, ...]]]:
+            products = [in_place(renamed(cafe, key), kind) for key, kind in dict(some).items()]
+            episodes = build_manifest(products).episodes
+            return {e.episode_id: (e.split, tuple(p.text for p in e.training_prompts)) for e in episodes}
+
+        scenes = list(dict(scenes).items())
+        early = assigned(scenes[: len(scenes) // 2])
+        chance.shuffle(scenes)
+        assert early.items() <= assigned(scenes).items()
+
+    def test_a_held_out_sentence_is_in_no_training_episode(self) -> None:
+        texts = [f"Fly to the {colour} chair number {i}." for colour in ("red", "blue") for i in range(500)]
+        held = [t for t in texts if is_unseen_instruction(t)]
+        assert 0.07 < len(held) / len(texts) < 0.13
+
+    def test_a_kind_of_place_is_held_out_with_all_its_scenes_and_an_imported_world_never(self) -> None:
+        assert {split_of(f"scene-{i}", i % 7, "wine bar") for i in range(200)} == {"test_unseen_category"}
+        assert "test_unseen_category" not in {split_of(f"scene-{i}", i % 7) for i in range(200)}
+        kinds = [name for c in standard_taxonomy().categories for name in c.subcategories]
+        held = [name for name in kinds if split_of("x", 0, name) == "test_unseen_category"]
+        assert 0.04 < len(held) / len(kinds) < 0.2
+
+    def test_a_flight_whose_every_instruction_is_held_out_trains_nobody(self, cafe: SceneProducts) -> None:
+        said = next(t for t in (f"Go to the chair, take {i}." for i in range(99)) if is_unseen_instruction(t))
+        own = tuple(replace(p, text=said) for p in cafe.prompts)
+        splits = {e.flight_id: e.split for e in episodes_of(replace(renamed(cafe, "hall"), prompts=Prompts(own)))}
+        assert set(splits.values()) <= {"test_unseen_instruction", "val_seen"}
+        assert "test_unseen_instruction" in splits.values()
 
     def test_an_unseen_scene_is_unseen_in_all_of_its_flights(self) -> None:
         for scene in (f"scene-{i}" for i in range(200)):
@@ -140,7 +194,14 @@ class TestManifest:
         manifest.save(tmp_path)
         assert DatasetManifest.load(tmp_path) == manifest
         files = {p.name for p in tmp_path.iterdir()}
-        assert files == {"manifest.json", "episodes.parquet", "statistics.json", "conventions.json", "README.md"}
+        assert files == {
+            "manifest.json",
+            "episodes.parquet",
+            "statistics.json",
+            "conventions.json",
+            "README.md",
+            "CHANGELOG.md",
+        }
 
     def test_the_same_products_give_the_same_bytes(self, cafe: SceneProducts, tmp_path: Path) -> None:
         for name in ("one", "two"):
@@ -157,6 +218,26 @@ class TestManifest:
     def test_a_version_of_the_future_is_one_clear_sentence(self, cafe: SceneProducts, tmp_path: Path) -> None:
         build_manifest([cafe]).save(tmp_path)
         text = (tmp_path / "manifest.json").read_text()
-        (tmp_path / "manifest.json").write_text(text.replace('"version": 1', '"version": 9', 1))
-        with pytest.raises(ProductError, match="has version 9, this FlyMirage reads 1"):
+        (tmp_path / "manifest.json").write_text(text.replace('"version": 2', '"version": 9', 1))
+        with pytest.raises(ProductError, match="has version 9, this FlyMirage reads 2"):
             DatasetManifest.load(tmp_path)
+
+
+class TestChangelog:
+    def test_each_change_of_content_is_a_version_that_says_what_changed(self, cafe: SceneProducts) -> None:
+        hall, again = renamed(cafe, "hall"), replace(cafe, data_versions={"boxes": "cd34"})
+        first = build_manifest([cafe])
+        grown = build_manifest([cafe, hall], first.versions)
+        changed = build_manifest([again], grown.versions)
+        assert [(v.number, v.added, v.changed, v.removed) for v in changed.versions] == [
+            (1, ("cafe",), (), ()),
+            (2, ("hall",), (), ()),
+            (3, (), ("cafe",), ("hall",)),
+        ]
+        assert [v.episodes for v in changed.versions] == [3, 6, 3]
+
+    def test_the_same_data_are_the_same_version(self, cafe: SceneProducts, tmp_path: Path) -> None:
+        first = build_manifest([cafe])
+        first.save(tmp_path)
+        assert build_manifest([cafe], DatasetManifest.load(tmp_path).versions).versions == first.versions
+        assert "Added 1 scenes: cafe." in (tmp_path / "CHANGELOG.md").read_text()
