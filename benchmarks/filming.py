@@ -82,6 +82,7 @@ def compare_codecs(pictures: list[Rendering]) -> None:
         ("H.264 crf 18 veryfast fastdecode", {"crf": "18", "preset": "veryfast", "tune": "fastdecode"}),
         ("H.264 crf 18 superfast", {"crf": "18", "preset": "superfast"}),
         ("H.264 crf 18 ultrafast", {"crf": "18", "preset": "ultrafast"}),
+        ("H.264 qp 18 ultrafast", {"qp": "18", "preset": "ultrafast"}),
     ):
         size, cost, back = encoded(map(i420, colours), "libx264", "yuv420p", options, "mp4")
         pairs = zip(colours, (cv2.cvtColor(b, cv2.COLOR_YUV2RGB_I420) for b in back), strict=True)

@@ -19,9 +19,9 @@ from flymirage_core.errors import InputError, ProductError
 
 GROUP_OF_PICTURES = 2
 """Frames from one key frame to the next; small, so that a trainer can jump to any frame (LeRobot's choice)."""
-H264_OPTIONS = {"crf": "18", "preset": "ultrafast"}
-"""42 to 47 dB at 640 x 480, 22 to 29 kB and 1.5 ms of CPU a frame; "veryfast" is a third smaller and takes 5 ms, which
-the renderer would wait for. Depth is four times as large anyway (benchmarks/RENDERING.md)."""
+H264_OPTIONS = {"qp": "18", "preset": "ultrafast"}
+"""45 dB at 640 x 480, 20 to 27 kB and 1.4 ms of CPU a frame; a constant quantiser is cheaper and smaller here than
+"crf" at the same quality, and "veryfast" takes 5 ms, which the renderer would wait for (benchmarks/RENDERING.md)."""
 BT601 = Colorspace.ITU601
 YUV_FROM_RGB = np.array(
     [[65.481, 128.553, 24.966, 16 * 255], [-37.797, -74.203, 112.0, 128 * 255], [112.0, -93.786, -18.214, 128 * 255]]
