@@ -149,12 +149,14 @@ class MarbleSettings(EndpointSettings):
     lost_start_looks: Count = 3
     resubmit_after_lost_start: Literal["ask", "auto"] = "ask"
     """What follows if it is nowhere: fail and let a person look, or pay for another."""
+    attempts: Count = 2
+    """How often a world is started in all, if its generation fails; each time with another seed."""
+    failed_credits: int = Field(default=0, ge=0)
+    """What a failed generation costs: by the documents nothing, but that is not confirmed."""
     worst_credits: Count = 3080
     """Of one world: 80 for the panorama, 1500 for the world, up to 1500 for its size."""
     download_timeout: Positive = 120.0
     download_tries: Count = 6
-    collider_fit: Positive = 0.03
-    """A collider farther from the Gaussians than this share of the world's diagonal, in either frame, is dropped."""
 
 
 class TokenPrice(Section):

@@ -91,11 +91,11 @@ class Ledger:
             )
 
     def settle(self, call_id: str, usage: Usage) -> None:
-        """The call was answered: this is what it cost."""
+        """The call was answered: this is what it cost. Settling it again changes nothing."""
         with self.database.transaction() as connection:
             connection.execute(
                 "UPDATE calls SET state = 'settled', usd = ?, input_tokens = ?, cached_tokens = ?, output_tokens = ?, "
-                "images = ?, credits = ?, seconds = ? - at WHERE id = ?",
+                "images = ?, credits = ?, seconds = ? - at WHERE id = ? AND state = 'sent'",
                 (
                     usage.usd,
                     usage.input_tokens,
@@ -112,6 +112,18 @@ class Ledger:
         """The call certainly cost nothing: it never left, or was refused."""
         with self.database.transaction() as connection:
             connection.execute("UPDATE calls SET state = 'free' WHERE id = ?", (call_id,))
+
+    def unsettled(self, service: str) -> int:
+        """How many calls of a service are booked at their worst: in flight, or lost."""
+        with self.database.reading() as connection:
+            query = "SELECT COUNT(*) FROM calls WHERE service = ? AND state = 'sent'"
+            return int(connection.execute(query, (service,)).fetchone()[0])
+
+    def others_since(self, service: str, call_id: str, since: float) -> int:
+        """How many other calls of a service cost, or may cost, something since a time."""
+        with self.database.reading() as connection:
+            query = "SELECT COUNT(*) FROM calls WHERE service = ? AND id != ? AND state != 'free' AND at + seconds >= ?"
+            return int(connection.execute(query, (service, call_id, since)).fetchone()[0])
 
     def spent(self, scene: str = "", asset: str = "", since: float = 0.0) -> Spent:
         """Sums; of one scene, of one asset of it, or since a time (seconds since the epoch)."""
