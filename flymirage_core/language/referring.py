@@ -130,21 +130,22 @@ class _Description:
         self.noun = Noun(UNNAMED if self.nameless else target.label)
         self.sides: list[Term] = [s for side in Side if self._holds(s := Located(side))]
         self.looks = _looks(target)
+        by_size = BY_SIZE[:3] if self.nameless else BY_SIZE
+        self.sizes: list[Term] = [*(Most(by) for by in by_size), *(Sized(size) for size in Size)]
         self._place_list: list[Term] | None = None
 
     def object_centred(self) -> Iterator[Meaning]:
         """The noun, refined by size or by where the drone sees it; a thing without name needs a shape at least."""
         kernels: list[Terms] = [(s, self.noun) for s in self._shapes()] if self.nameless else [(self.noun,)]
-        sizes: list[Term] = [*(Most(by) for by in BY_SIZE), *(Sized(size) for size in Size)]
         ranks: list[Term] = [Most(by) for by in BY_PLACE]
         ranks += [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
         yield from (Meaning(kernel) for kernel in kernels)
-        yield from _with(kernels, sizes)
+        yield from _with(kernels, self.sizes)
         yield from _with(kernels, self.sides)
         yield from _with(kernels, ranks)
-        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in sizes)
+        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
         if self.nameless:
-            yield from _with([(self.noun,)], sizes[:3])
+            yield from _with([(self.noun,)], self.sizes[:3])
 
     def relative(self) -> Iterator[Meaning]:
         """The noun with a relation to the most sensible landmarks; refined by looks, a side, or a second relation."""
@@ -154,7 +155,7 @@ class _Description:
         yield from _with(kernels, [Most(Superlative.CLOSEST_TO, m) for m, _ in self._landmarks()])
         for kernel in kernels:
             yield from (Meaning((*kernel, side, place)) for side in self.sides for place in self._places())
-        sizes: list[Term] = [*(Most(by) for by in (*BY_SIZE, *BY_PLACE)), *(Sized(size) for size in Size)]
+        sizes = [*self.sizes, *(Most(by) for by in BY_PLACE)]
         yield from (Meaning((size, *k, p)) for k in kernels[:2] for p in self._places()[:8] for size in sizes)
         for kernel in kernels:
             pairs = combinations(self._places()[:10], 2)
@@ -165,14 +166,13 @@ class _Description:
         pairs = [pair for pair in combinations(self.looks, 2) if type(pair[0]) is not type(pair[1])]
         looks: list[Terms] = [*((look,) for look in self.looks), *pairs]
         kernels: list[Terms] = [(*look, self.noun) for look in looks]
-        sizes: list[Term] = [*(Most(by) for by in BY_SIZE), *(Sized(size) for size in Size)]
         yield from (Meaning(kernel) for kernel in kernels)
-        yield from _with(kernels, sizes)
+        yield from _with(kernels, self.sizes)
         yield from _with(kernels, self.sides)
         yield from _with(kernels, [Most(by) for by in BY_PLACE])
         if not self.nameless:
-            yield from _with([(self.noun,)], sizes[:3])
-        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in sizes)
+            yield from _with([(self.noun,)], self.sizes[:3])
+        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
         ranks: list[Term] = [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
         yield from _with(kernels, ranks)
 
@@ -180,8 +180,7 @@ class _Description:
         return [look for look in self.looks if isinstance(look, Shaped)]
 
     def _holds(self, term: Term) -> bool:
-        index = self.resolver.boxes.index(self.target)
-        return bool(self.resolver.term_truths(term)[index] == Truth.YES)
+        return self.resolver.judge(term)(self.target) is Truth.YES
 
     def _places(self) -> list[Term]:
         """True relations of the target to its landmarks, most sensible first."""
@@ -234,7 +233,18 @@ def _landmark_phrase(box: ObjectBox, resolver: Resolver) -> Meaning | None:
 
 def _with(kernels: Iterable[Terms], refinements: Iterable[Term]) -> Iterator[Meaning]:
     refined = list(refinements)
-    return (Meaning((*kernel, term)) for kernel in kernels for term in refined)
+    return (Meaning((*kernel, term)) for kernel in kernels for term in refined if not _clashes(term, kernel))
+
+
+def _clashes(term: Term, kernel: Terms) -> bool:
+    """ "The shortest tall lamp" says one dimension twice, and "the small flat box" nearly so."""
+    shapes = {t.shape for t in kernel if isinstance(t, Shaped)}
+    match term:
+        case Most(Superlative.TALLEST | Superlative.SHORTEST):
+            return bool(shapes & {Shape.TALL, Shape.SLIM, Shape.LOW, Shape.FLAT})
+        case Most(Superlative.LONGEST):
+            return Shape.LONG in shapes
+    return False
 
 
 def _landmarks_differ(one: Term, other: Term) -> bool:

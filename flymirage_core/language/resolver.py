@@ -33,6 +33,7 @@ from flymirage_core.language.nouns import is_generic, named
 from flymirage_core.language.scene_relations import StartPose, Truth, between, on_side, outline_gap, related
 
 Truths = NDArray[np.int8]
+Measure = Callable[[ObjectBox], float]
 
 SUPERLATIVE_MARGIN = 0.2
 """Share of the winner's measure by which it must beat the next best ..."""
@@ -90,46 +91,53 @@ class Resolver:
 
     def term_truths(self, term: Term) -> Truths:
         """How one term, no superlative, stands of each object (N,)."""
-        return self._remembered(term, lambda box: self._holds(term, box), np.int8)
+        return self._remembered(term, lambda: self.judge(term), np.int8)
 
-    def _remembered(self, term: Term, measure: Callable[[ObjectBox], float], dtype: type) -> NDArray[Any]:
+    def _remembered(self, term: Term, measure: Callable[[], Measure], dtype: type) -> NDArray[Any]:
         known = self._from_here if egocentric(term) else self._anywhere
         if term not in known:
-            known[term] = np.array([measure(box) for box in self.boxes], dtype)
+            of = measure()
+            known[term] = np.array([of(box) for box in self.boxes], dtype)
         return known[term]
 
-    def _holds(self, term: Term, box: ObjectBox) -> Truth:
+    def judge(self, term: Term) -> Callable[[ObjectBox], Truth]:
+        """How one term, no superlative, stands of an object."""
         match term:
             case Noun(word):
-                return named(word, box.label)
+                return lambda box: named(word, box.label)
             case Nameless():
-                return Truth.MAYBE if is_generic(box.label) else Truth.NO
+                return lambda box: Truth.MAYBE if is_generic(box.label) else Truth.NO
             case Colour(name):
-                return coloured(name, box.colour)
+                return lambda box: coloured(name, box.colour)
             case Material(name):
-                return made_of(name, box.material)
+                return lambda box: made_of(name, box.material)
             case Shaped(shape):
-                return shaped(shape, box)
+                return lambda box: shaped(shape, box)
             case Located(side):
-                return on_side(side, box, self.start)
+                return lambda box: on_side(side, box, self.start)
             case Related(relation, landmark):
-                marks = self._marks(landmark, box)
-                return max((min(t, related(relation, box, mark, self.start)) for mark, t in marks), default=Truth.NO)
-            case Between(one, other):
-                pairs = (
-                    min(truth_a, truth_b, between(box, a, b))
-                    for a, truth_a in self._marks(one, box)
-                    for b, truth_b in self._marks(other, box)
-                    if a is not b
+                marks = self._marks(landmark)
+                return lambda box: max(
+                    (min(t, related(relation, box, mark, self.start)) for mark, t in marks if mark is not box),
+                    default=Truth.NO,
                 )
-                return max(pairs, default=Truth.NO)
+            case Between(one, other):
+                ones, others = self._marks(one), self._marks(other)
+                return lambda box: max(
+                    (
+                        min(truth_a, truth_b, between(box, a, b))
+                        for a, truth_a in ones
+                        for b, truth_b in others
+                        if a is not b and box is not a and box is not b
+                    ),
+                    default=Truth.NO,
+                )
         raise AssertionError(f"{term} compares objects; it does not hold of one")
 
-    def _marks(self, landmark: Meaning, box: ObjectBox) -> list[tuple[ObjectBox, Truth]]:
-        """What the landmark may be, other than the object itself."""
+    def _marks(self, landmark: Meaning) -> list[tuple[ObjectBox, Truth]]:
+        """What the landmark may be."""
         truths = self.truths(landmark)
-        marks = [(self.boxes[i], Truth(truths[i])) for i in np.flatnonzero(truths).tolist()]
-        return [(mark, truth) for mark, truth in marks if mark is not box]
+        return [(self.boxes[i], Truth(truths[i])) for i in np.flatnonzero(truths).tolist()]
 
     def _contrasted(self, term: Sized, truths: Truths) -> Truths:
         """Of several candidates those that are clearly the large (or small) one; a single one is neither, but meant."""
@@ -150,7 +158,7 @@ class Resolver:
         if len(candidates) < term.rank:
             return np.zeros_like(truths)
         measure = Most(term.by, term.landmark)
-        costs = self._remembered(measure, lambda box: self._cost(measure, box), float)[candidates]
+        costs = self._remembered(measure, lambda: self._measure(measure), float)[candidates]
         ranked = float(np.sort(costs)[term.rank - 1])
         with np.errstate(invalid="ignore"):  # nothing to be close to: infinitely far
             near = np.abs(costs - ranked) <= _margin(term.by, ranked)
@@ -169,35 +177,38 @@ class Resolver:
             return candidates[inside], bool((bearings[inside] <= FRONT[0]).all())
         return candidates, True
 
-    def _cost(self, term: Most, box: ObjectBox) -> float:
+    def _measure(self, term: Most) -> Measure:
         """Less is more: metres, or minus metres, or radians from the left."""
         match term.by:
-            case Superlative.LARGEST | Superlative.SMALLEST:
-                cost = _mean_edge(box)
-            case Superlative.TALLEST | Superlative.SHORTEST:
-                cost = box.size[2]
+            case Superlative.LARGEST:
+                return lambda box: -_mean_edge(box)
+            case Superlative.SMALLEST:
+                return _mean_edge
+            case Superlative.TALLEST:
+                return lambda box: -box.size[2]
+            case Superlative.SHORTEST:
+                return lambda box: box.size[2]
             case Superlative.LONGEST:
-                cost = max(box.size[:2])
-            case Superlative.HIGHEST | Superlative.LOWEST:
-                cost = box.centre[2]
-            case Superlative.NEAREST | Superlative.FARTHEST:
-                cost = self.start.range(box)
-            case Superlative.LEFTMOST | Superlative.RIGHTMOST:
-                cost = self.start.bearing(box)
+                return lambda box: -max(box.size[:2])
+            case Superlative.HIGHEST:
+                return lambda box: -box.centre[2]
+            case Superlative.LOWEST:
+                return lambda box: box.centre[2]
+            case Superlative.NEAREST:
+                return self.start.range
+            case Superlative.FARTHEST:
+                return lambda box: -self.start.range(box)
+            case Superlative.LEFTMOST:
+                return lambda box: -self.start.bearing(box)
+            case Superlative.RIGHTMOST:
+                return self.start.bearing
             case Superlative.CLOSEST_TO:
-                marks = self._marks(term.landmark, box) if term.landmark else []
-                cost = min((outline_gap(box, mark) for mark, _ in marks), default=float("inf"))
-        return -cost if term.by in _THE_MORE_THE_BETTER else cost
+                marks = self._marks(term.landmark) if term.landmark else []
+                return lambda box: min(
+                    (outline_gap(box, mark) for mark, _ in marks if mark is not box), default=float("inf")
+                )
 
 
-_THE_MORE_THE_BETTER = (
-    Superlative.LARGEST,
-    Superlative.TALLEST,
-    Superlative.LONGEST,
-    Superlative.HIGHEST,
-    Superlative.FARTHEST,
-    Superlative.LEFTMOST,
-)
 _BY_METRES = (Superlative.NEAREST, Superlative.FARTHEST, Superlative.CLOSEST_TO)
 
 
