@@ -1,11 +1,14 @@
 """What Dagster is told when a stage fails: one sentence, and whether trying again may help."""
 
 import errno
+from typing import Any
 
 import dagster as dg
 
-from flymirage_core.errors import FlyMirageError, TransientServiceError
+from flymirage_core.errors import FlyMirageError, NightStopError, TransientServiceError
 
+STOPS_GROWTH = "stops_growth"
+"""Metadata of failures that every other scene would meet too."""
 NO_RETRY = {
     errno.ENOSPC: "the disk is full",
     errno.EROFS: "the disk is read-only",
@@ -23,9 +26,10 @@ class one_clear_sentence:  # noqa: N801 - reads as what it does at the place of 
         if isinstance(error, TransientServiceError | ConnectionError | TimeoutError):
             raise dg.Failure(description=str(error) or type(error).__name__, allow_retries=True) from error
         if isinstance(error, FlyMirageError):
-            raise dg.Failure(
-                description=str(error), metadata={"error": type(error).__name__}, allow_retries=False
-            ) from error
+            metadata: dict[str, Any] = {"error": type(error).__name__}
+            if isinstance(error, NightStopError):
+                metadata[STOPS_GROWTH] = True
+            raise dg.Failure(description=str(error), metadata=metadata, allow_retries=False) from error
         if isinstance(error, OSError) and error.errno in NO_RETRY:
             raise dg.Failure(
                 description=f"{error.filename} cannot be written: {NO_RETRY[error.errno]}; make room or set "

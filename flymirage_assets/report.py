@@ -1,11 +1,16 @@
 """Tables for the terminal: products of a scene, scenes of a store, what the doctor found."""
 
+from collections import Counter
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from rich.table import Table
 
-from flymirage_core.occupancy.doctor import DoctorReport
 from resources.store import Store
+
+if TYPE_CHECKING:  # they take a second to import
+    from flymirage_assets.staleness import StaleProduct
+    from flymirage_core.occupancy.doctor import DoctorReport
 
 SCENE_PRODUCTS = (
     "description",
@@ -83,10 +88,33 @@ def scenes_table(store: Store, keys: Sequence[str]) -> Table:
     return table
 
 
-def doctor_table(report: DoctorReport) -> Table:
+def doctor_table(report: "DoctorReport") -> Table:
     """One row a finding, in plain words."""
     table = Table(show_header=False, box=None)
     for finding in report.findings:
         style = SEVERITY_STYLE[finding.severity]
         table.add_row(f"[{style}]{finding.severity}[/{style}]", finding.sentence)
+    return table
+
+
+def stale_table(found: "Sequence[StaleProduct]", scenes: int) -> Table:
+    """One row a product and reason: how many scenes, and what making it again took the last time."""
+    table = Table(title_justify="left", caption_justify="left")
+    for name in ("product", "why"):
+        table.add_column(name)
+    for name in ("scenes", "seconds", "US dollars"):
+        table.add_column(name, justify="right")
+    groups = Counter((s.asset, s.reasons) for s in found)
+    for (asset, reasons), count in groups.items():
+        members = [s for s in found if (s.asset, s.reasons) == (asset, reasons)]
+        seconds, usd = sum(s.seconds for s in members), sum(s.usd for s in members)
+        table.add_row(asset, "\n".join(reasons), str(count), f"{seconds:.0f}", f"{usd:.2f}")
+    stale = len({s.scene for s in found})
+    table.title = f"{stale} of {scenes} scenes have something stale" if found else f"{scenes} scenes, nothing is stale"
+    surely = [s for s in found if not s.follows]
+    table.caption = (
+        f"at most {sum(s.seconds for s in found):.0f} s and ${sum(s.usd for s in found):.2f}; at least "
+        f"{sum(s.seconds for s in surely):.0f} s and ${sum(s.usd for s in surely):.2f}: what follows costs nothing "
+        "where what it follows from turns out the same"
+    )
     return table

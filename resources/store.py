@@ -8,6 +8,7 @@ Layout under the base (a local path or any fsspec URL)::
     products/<asset>/<scene>/product.json      written last: which digest is current, and its provenance
     products/<asset>/<scene>/made/<input hash>.json   its earlier records: the way back to old settings is free
     services/<scene>/...                       answers that were paid for, and journals of paid requests
+    growth/                                    notes of growth: how many scenes each category has
     staging/                                   work in progress; never read, swept when old
 
 A writer that is killed leaves at most an unreferenced folder. Reading goes by ``product.json`` alone.
@@ -60,6 +61,29 @@ class Store:
         """Make a scene known. Registering it again with other contents replaces it (its products become stale)."""
         self._put_text(self.base / "scenes" / f"{origin.scene}.json", origin.model_dump_json(indent=2) + "\n")
 
+    def claim(self, origin: SceneOrigin) -> bool:
+        """Register a scene that nobody registered before; False if somebody did, also at this very instant."""
+        path = self.base / "scenes" / f"{origin.scene}.json"
+        text = origin.model_dump_json(indent=2) + "\n"
+        if not self.is_local:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            try:
+                with path.fs.open(path.path, "xb") as file:
+                    file.write(text.encode())
+            except FileExistsError:
+                return False
+            return True
+        staged = self._staging_folder() / path.name
+        self._put_text(UPath(staged), text)
+        Path(str(path.parent)).mkdir(parents=True, exist_ok=True)
+        try:
+            os.link(staged, str(path))  # fails if it exists; and nobody ever reads half of it
+        except FileExistsError:
+            return False
+        finally:
+            shutil.rmtree(staged.parent, ignore_errors=True)
+        return True
+
     def origin(self, scene: str) -> SceneOrigin | None:
         """What a scene is, or None if nobody registered it (a key typed in the UI)."""
         path = self.base / "scenes" / f"{check_scene_key(scene)}.json"
@@ -94,6 +118,11 @@ class Store:
         return local
 
     # Products -------------------------------------------------------------------------------------------------------
+
+    def assets(self) -> list[str]:
+        """Names of all products that any scene has."""
+        products = self.base / "products"
+        return sorted(p.name for p in products.iterdir()) if products.exists() else []
 
     def current(self, asset: str, scene: str) -> ProductRecord | None:
         """The record of the product that is current, or None if there is none yet."""
@@ -174,6 +203,19 @@ class Store:
             yield folder
         finally:
             shutil.rmtree(folder, ignore_errors=True)
+
+    # Notes of the machine room --------------------------------------------------------------------------------------
+
+    def write_note(self, name: str, text: str) -> None:
+        """Keep a small text under ``name`` (a relative path), whole or not at all."""
+        self._put_text(self.base / name, text)
+
+    def read_note(self, name: str) -> str | None:
+        """What `write_note` kept, or None."""
+        try:
+            return (self.base / name).read_text()
+        except FileNotFoundError:
+            return None
 
     # What services answered ------------------------------------------------------------------------------------------
 

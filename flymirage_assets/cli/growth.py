@@ -1,15 +1,18 @@
-"""Commands that make scenes: demo, grow, make."""
+"""Commands that make scenes: demo, grow, make, rebuild."""
 
-import itertools
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.markup import escape
 
-from flymirage_assets.cli.app import app, console, progress_bars, project_store
-from flymirage_assets.cli.data import lerobot
-from flymirage_core.errors import InputError
+from flymirage_assets.cli.app import app, console, progress_bars, project_settings, project_store
+from flymirage_assets.cli.exports import lerobot
+from flymirage_core.errors import FlyMirageError, InputError
+
+if TYPE_CHECKING:
+    from dagster import DagsterInstance
 
 DEMO_SCENE = "demo"
 SETTINGS_FILE = Path("flymirage.toml")
@@ -49,26 +52,68 @@ def demo(out: Annotated[Path, typer.Option(help="where the LeRobot folder goes")
 
 
 @app.command()
-def grow(scenes: Annotated[int, typer.Option(min=1, help="how many new scenes")] = 1) -> None:
-    """Grow new scenes through every product; unfinished ones first."""
-    from flymirage_assets.report import SCENE_PRODUCTS, scenes_table
-    from resources.records import SceneOrigin
+def grow(
+    scenes: Annotated[int, typer.Option(min=1, help="how many scenes")] = 1,
+    forever: Annotated[bool, typer.Option("--forever", help="scene after scene, until stopped")] = False,
+) -> None:
+    """Grow scenes through every product, unfinished ones first; each new one in the place that is rarest so far."""
+    from flymirage_assets.growing import endless_scenes, next_scenes
+    from flymirage_assets.report import scenes_table
+    from flymirage_assets.runs import dagster_instance
 
     store = project_store()
-    known = store.scenes()
-    begun = [s for s in known if s.startswith("scene-") and store.current(SCENE_PRODUCTS[-1], s) is None]
-    fresh = (key for i in itertools.count(1) if (key := f"scene-{i:04d}") not in known)
-    keys = list(itertools.islice(itertools.chain(begun, fresh), scenes))
-    for key in keys:
-        store.register(SceneOrigin(scene=key, kind="generated"))
-    make_scenes(keys)
-    console.print(scenes_table(store, keys))
+    with dagster_instance() as instance:
+        keys = endless_scenes(store, instance) if forever else next_scenes(store, instance, scenes)
+        begun = grow_scenes(instance, keys)
+    console.print(scenes_table(store, begun[-20:]))
 
 
 @app.command()
 def make(scenes: Annotated[list[str], typer.Argument(help="scene keys")]) -> None:
     """Make what is missing or stale of scenes that are already known."""
     from flymirage_assets.report import products_table
+
+    store = project_store()
+    _check_known(scenes)
+    make_scenes(scenes)
+    for scene in scenes:
+        console.print(products_table(store, scene))
+
+
+@app.command()
+def rebuild(
+    scenes: Annotated[list[str] | None, typer.Argument(help="scene keys; all if none is given")] = None,
+    stage: Annotated[str, typer.Option(help="only this stage and what follows from it, e.g. trajectories")] = "",
+    stale: Annotated[bool, typer.Option("--stale/--all", help="only what is stale, or look at everything")] = True,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="show what is stale, why, and what it costs")] = False,
+    background: Annotated[bool, typer.Option("--background", help="as a backfill of the daemon of `make dev`")] = False,
+) -> None:
+    """Make again what changed code, settings or inputs made stale; what turns out the same costs nothing."""
+    from flymirage_assets.definitions import defs
+    from flymirage_assets.report import stale_table
+    from flymirage_assets.runs import launch_backfill
+    from flymirage_assets.staleness import stage_specs, stale_products, with_followers
+
+    settings, store = project_settings(), project_store()
+    specs = stage_specs(defs)
+    chosen = with_followers(specs, stage) if stage else specs
+    keys = _check_known(scenes) if scenes else store.scenes()
+    found = [s for s in stale_products(store, specs, settings, keys) if s.asset in {c.name for c in chosen}]
+    console.print(stale_table(found, len(keys)))
+    wanted = {key: [s.asset for s in found if s.scene == key] for key in sorted({s.scene for s in found})}
+    if not stale:
+        wanted = {key: [c.name for c in chosen] for key in keys}
+    if dry_run or not wanted:
+        return
+    if background:
+        assets = {asset for of_scene in wanted.values() for asset in of_scene}
+        backfill = launch_backfill([c.name for c in chosen if c.name in assets], list(wanted))
+        console.print(f"backfill {backfill}: {len(wanted)} runs are queued; `make dev` runs and shows them")
+        return
+    make_scenes(list(wanted), wanted)
+
+
+def _check_known(scenes: list[str]) -> list[str]:
     from flymirage_core.scene.keys import check_scene_key
 
     store = project_store()
@@ -77,23 +122,50 @@ def make(scenes: Annotated[list[str], typer.Argument(help="scene keys")]) -> Non
             raise InputError(
                 f"scene {scene!r} is not known: `flymirage status` lists scenes, `flymirage grow` adds one"
             )
-    make_scenes(scenes)
-    for scene in scenes:
-        console.print(products_table(store, scene))
+    return scenes
 
 
-def make_scenes(keys: list[str]) -> None:
+def make_scenes(keys: list[str], assets: "dict[str, list[str]] | None" = None) -> None:
     """Materialise the scenes one after another; raises `RunError` at the end if one failed."""
-    from flymirage_assets.runs import RunError, dagster_instance, run_scene
+    from flymirage_assets.runs import dagster_instance
 
-    failed: dict[str, str] = {}
     with dagster_instance() as instance:
-        for key in keys:
-            console.print(f"[bold]{key}[/bold]")
-            with progress_bars():
-                outcome = run_scene(instance, key)
-            if outcome.error:
-                failed[key] = outcome.error
-                console.print(f"[red]failed[/red] {key}: {escape(outcome.error)}", soft_wrap=True)
+        grow_scenes(instance, keys, assets)
+
+
+def grow_scenes(
+    instance: "DagsterInstance", keys: Iterable[str], assets: "dict[str, list[str]] | None" = None
+) -> list[str]:
+    """Materialise scene after scene until there is none left or a reason to stop; return the keys that were begun.
+
+    Raises `RunError` at the end if one failed, and `StoppedError` at Ctrl-C: nothing half-made is ever read, and the
+    next call carries on from the last finished product.
+    """
+    from flymirage_assets.growing import why_stop
+    from flymirage_assets.runs import RunError, run_scene
+
+    settings, store = project_settings(), project_store()
+    begun: list[str] = []
+    failed: list[str] = []
+    for key in keys:
+        if reason := why_stop(store, settings):
+            console.print(f"[yellow]stopped[/yellow] {escape(reason)}", soft_wrap=True)
+            break
+        console.print(f"[bold]{key}[/bold]")
+        begun.append(key)
+        with progress_bars():
+            outcome = run_scene(instance, key, (assets or {}).get(key, ()))
+        if outcome.interrupted:
+            raise StoppedError(f"stopped in the middle of {key}: run the command again to carry on from there")
+        if outcome.error:
+            failed.append(key)
+            console.print(f"[red]failed[/red] {key}: {escape(outcome.error)}", soft_wrap=True)
+        if outcome.stops_growth:
+            break
     if failed:
-        raise RunError(f"{len(failed)} of {len(keys)} scenes failed: {', '.join(failed)}")
+        raise RunError(f"{len(failed)} of {len(begun)} scenes failed: {', '.join(failed)}")
+    return begun
+
+
+class StoppedError(FlyMirageError):
+    """Somebody pressed Ctrl-C."""
