@@ -14,7 +14,7 @@ from flymirage_assets.stage import ProductAsset, Stage, materialize_result
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.dataset.changelog import DataVersion
 from flymirage_core.dataset.export_folder import export
-from flymirage_core.dataset.formats import FORMATS
+from flymirage_core.dataset.formats import DESCRIPTIONS, FORMATS
 from flymirage_core.dataset.lerobot import DepthExport
 from flymirage_core.dataset.manifest import DatasetManifest, build_manifest
 from flymirage_core.dataset.scene_products import SceneLineage, SceneProducts
@@ -123,7 +123,7 @@ def export_asset(form: str, dataset: dg.AssetsDefinition) -> dg.AssetsDefinition
         group_name="dataset",
         required_resource_keys={"io_manager"},
         kinds={"parquet"},
-        description=FORMATS[form].__doc__,
+        description=DESCRIPTIONS[form],
     )
     def write(context: dg.AssetExecutionContext, config: ExportConfig) -> dg.MaterializeResult[None]:
         store = cast(ProductIOManager, context.resources.io_manager).store

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.dataset.depth_geometry import camera_of, depth_disagreement
+from flymirage_core.dataset.depth_geometry import Depth, camera_of, depth_disagreement
 from flymirage_core.dataset.flight_columns import poses_from_actions, wrapped
 from flymirage_core.dataset.lerobot_schema import RGB_KEY
 from flymirage_core.dataset.reader import EpisodeRecord, LeRobotFolder
@@ -29,7 +29,7 @@ class ExportedEpisode(NamedTuple):
     name: str
     cameras: list[Camera]  # a frame
     box_centre: NDArray[np.float64]  # (3,) the target's
-    depths: tuple[NDArray[np.uint16], NDArray[np.uint16]] | None  # of the first and the middle frame, mm
+    depths: tuple[Depth, Depth] | None  # of the first and the middle frame, mm
 
 
 def check_geometry(episode: ExportedEpisode, frames: FlightFrames) -> bool:
@@ -47,16 +47,21 @@ def check_geometry(episode: ExportedEpisode, frames: FlightFrames) -> bool:
     for index in (0, -1):
         _check_view(episode, index, source[index])
     if episode.depths is not None:
-        middle = len(frames) // 2
-        error = depth_disagreement(episode.depths[0], episode.cameras[0], episode.depths[1], episode.cameras[middle])
-        if error > DEPTH_TOLERANCE:  # NaN: the two share no point
-            raise ProductError(
-                f"export self-test: the depth of {episode.name} disagrees by {error:.1%} between frames 0 and "
-                f"{middle}, at most {DEPTH_TOLERANCE:.0%} is allowed: depth and poses differ"
-            )
+        check_depth(episode.name, episode.cameras, episode.depths)
     (pixel,), (depth,) = episode.cameras[-1].project(episode.box_centre)
     k = episode.cameras[-1].intrinsics
     return bool(depth > 0 and 0 <= pixel[0] < k.width and 0 <= pixel[1] < k.height)
+
+
+def check_depth(name: str, cameras: list[Camera], depths: tuple[Depth, Depth]) -> None:
+    """Raise `ProductError` if the depths of the first and the middle camera do not agree over their poses."""
+    middle = len(cameras) // 2
+    error = depth_disagreement(depths[0], cameras[0], depths[1], cameras[middle])
+    if error > DEPTH_TOLERANCE:  # NaN: the two share no point
+        raise ProductError(
+            f"export self-test: the depth of {name} disagrees by {error:.1%} between frames 0 and {middle}, at most "
+            f"{DEPTH_TOLERANCE:.0%} is allowed: depth and poses differ"
+        )
 
 
 def check_lerobot(folder: Path, products: SceneProducts) -> int:

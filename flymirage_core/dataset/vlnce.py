@@ -1,0 +1,151 @@
+"""VLN-CE episodes for evaluation: an episode an instruction, as ``<split>/<split>.json.gz`` and a ground-truth file.
+
+The files are VLN-CE's, the world is ours: z up, metres, body quaternion xyzw; conventions.json says so. Each split's
+``content/<scene>.json.gz`` holds one scene's episodes alone. A long instruction over several flights of a set is an
+episode of its own, of the kind "long_horizon".
+"""
+
+import gzip
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from flymirage_core.dataset.episodes import Episode
+from flymirage_core.dataset.export_check import PIXEL_TOLERANCE
+from flymirage_core.dataset.export_folder import Placed, Shard
+from flymirage_core.dataset.scene_folders import SceneFolders, flight_of
+from flymirage_core.dataset.scene_products import SceneProducts
+from flymirage_core.dataset.splits import SPLITS, is_unseen_instruction
+from flymirage_core.errors import ProductError
+from flymirage_core.rendering.camera import Camera
+
+GOAL_RADIUS = 1.0
+"""Metres from the target point within which an evaluation may count success; stored with every goal."""
+REFERENCE_STEP = 0.25
+"""Metres between points of the reference path: VLN-CE's step."""
+HELD_OUT_SPLIT = "test_unseen_instruction"
+
+Row = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class VlnceFormat(SceneFolders):
+    """A scene's place: how many episodes it adds to each split."""
+
+    name: str = "vlnce"
+
+    def write(
+        self, folder: Path, products: SceneProducts, episodes: tuple[Episode, ...], before: list[Shard]
+    ) -> Placed:
+        by_split: dict[str, list[Row]] = {}
+        for episode in episodes:
+            for prompt in episode.prompts:
+                held_out = episode.split == "train" and is_unseen_instruction(prompt.text)
+                row = _row(products, [episode], prompt.text, prompt.kind)
+                by_split.setdefault(HELD_OUT_SPLIT if held_out else episode.split, []).append(row)
+        by_flight = {e.flight_id: e for e in episodes}
+        for long in products.prompts.long_prompts:
+            legs = [by_flight[i] for i in long.flight_ids if i in by_flight]
+            if len(legs) == len(long.flight_ids):  # else a leg was dropped
+                by_split.setdefault(legs[0].split, []).append(_row(products, legs, long.text, "long_horizon"))
+        files = []
+        for split, rows in sorted(by_split.items()):
+            for i, row in enumerate(rows):
+                row["episode_id"] = f"{products.scene}/{split}/{i}"
+            files.append(f"{split}/content/{products.scene}.json.gz")
+            _write_gz(folder / files[-1], {"episodes": rows})
+        return Placed({split: len(rows) for split, rows in sorted(by_split.items())}, files)
+
+    def finish(self, folder: Path, shards: list[Shard]) -> dict[str, Any]:
+        for split in SPLITS:
+            own = [shard.scene for shard in shards if split in shard.place]
+            if own:
+                episodes = [row for scene in own for row in _read_gz(folder / split / "content" / f"{scene}.json.gz")]
+                truth = {row["episode_id"]: _truth(row) for row in episodes}
+                _write_gz(folder / split / f"{split}.json.gz", {"episodes": episodes})
+                _write_gz(folder / split / f"{split}_gt.json.gz", truth)
+        return {
+            "vlnce": {
+                "frame": "not Habitat's: right-handed, z up, metres; start_rotation xyzw, body (FLU) to world",
+                "goals": f"position: where the flight ends; radius {GOAL_RADIUS:g} m; object: the target's box centre",
+                "reference_path": f"the flown path, a point every {REFERENCE_STEP:g} m of arc, the last one the end",
+                "locations": "the reference path again, as VLN-CE's ground truth has it",
+                "long_horizon": "several flights of one task set, flown one after the other",
+            }
+        }
+
+    def check(self, folder: Path, products: SceneProducts) -> int:
+        """The drone's camera at each episode's start must see the target where its first frame does."""
+        T_body_camera = np.array(products.frames.rig.T_body_camera)
+        checked: set[int] = set()
+        for path in sorted(folder.glob(f"*/content/{products.scene}.json.gz")):
+            for row in _read_gz(path):
+                flight_id = row["trajectory_id"][0]
+                body = np.eye(4)
+                body[:3, :3] = Rotation.from_quat(row["start_rotation"]).as_matrix()
+                body[:3, 3] = row["start_position"]
+                camera = Camera(products.frames.rig.intrinsics, body @ T_body_camera)
+                source = products.frames.flight(flight_id).cameras()[0]
+                (found, depth), (expected, _) = (c.project(row["goals"][0]["object"]) for c in (camera, source))
+                if depth[0] > 0 and not np.linalg.norm(found - expected) <= PIXEL_TOLERANCE:
+                    raise ProductError(
+                        f"export self-test: episode {row['episode_id']} of {path} starts where its target projects "
+                        f"{np.linalg.norm(found - expected):.1f} pixels from where its first picture has it"
+                    )
+                checked.add(flight_id)
+        return len(checked)
+
+
+def _row(products: SceneProducts, legs: list[Episode], text: str, kind: str) -> Row:
+    flights = [flight_of(products, leg.flight_id) for leg in legs]
+    path = _resampled(np.concatenate([flight.positions for flight in flights]))
+    length = sum(float(leg.report.length) for leg in legs)
+    goals = [
+        {
+            "position": flight.positions[-1].tolist(),
+            "radius": GOAL_RADIUS,
+            "object": list(leg.box_centre),
+            "object_id": leg.object_id,
+            "object_category": leg.object_label,
+        }
+        for flight, leg in zip(flights, legs, strict=True)
+    ]
+    return {
+        "episode_id": "",
+        "trajectory_id": [leg.flight_id for leg in legs],
+        "scene_id": products.scene,
+        "start_position": list(legs[0].start_position),
+        "start_rotation": list(legs[0].start_quaternion),
+        "info": {"geodesic_distance": length, "duration": sum(leg.report.duration for leg in legs), "kind": kind},
+        "goals": goals if kind == "long_horizon" else goals[-1:],
+        "instruction": {"instruction_text": text},
+        "reference_path": path,
+    }
+
+
+def _resampled(positions: Any) -> list[list[float]]:
+    """Points every `REFERENCE_STEP` along a path (T, 3), its end included."""
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    wanted = np.append(np.arange(0.0, arc[-1], REFERENCE_STEP), arc[-1])
+    points = np.column_stack([np.interp(wanted, arc, axis) for axis in positions.T])
+    return [[round(float(v), 4) for v in point] for point in points]
+
+
+def _truth(row: Row) -> Row:
+    return {"locations": row["reference_path"], "forward_steps": len(row["reference_path"]) - 1}
+
+
+def _read_gz(path: Path) -> Iterable[Row]:
+    rows: list[Row] = json.loads(gzip.decompress(path.read_bytes()))["episodes"]
+    return rows
+
+
+def _write_gz(path: Path, value: Any) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(gzip.compress(json.dumps(value).encode(), mtime=0))
