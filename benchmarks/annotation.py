@@ -1,14 +1,19 @@
-"""How right the boxes are: recall, precision, centre error and CPU seconds of both passes. Truth is for scoring only.
+"""How right the boxes are: recall, precision, centre error, nouns, colours, CPU seconds. Truth is for scoring only.
 
-    python benchmarks/annotation.py analytic 11 12 13          # exact RGB-D of rooms made of boxes, by seed
+    python benchmarks/annotation.py worlds --results FILE [--count 20] [--prototype lift_boxes.py]   # ANNOTATION.md
     python benchmarks/annotation.py generated demo-1 demo-2    # worlds of the embedded world model, by scene key
+    python benchmarks/annotation.py analytic 11 12 13          # exact RGB-D of rooms made of boxes, by seed
     python benchmarks/annotation.py captured ROOM.spz ...      # no truth: boxes drawn into views, to be looked at
 
-``--pictures FOLDER`` writes overlays. Pass 1 is the orbit at all distances; pass 2 adds the exploration, cut at d_th1.
+``--pictures FOLDER`` writes overlays, ``--detector FILE`` gives YOLOX-Nano's weights. Pass 1 is the orbit at all
+distances; pass 2 adds the exploration, cut at d_th1. ``worlds`` appends a line a world to FILE and skips those in it.
 """
 
 import argparse
+import importlib.util
+import json
 import math
+import resource
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -20,11 +25,17 @@ import cv2
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from flymirage_core.annotation.annotator import Annotator
 from flymirage_core.annotation.boxes import BoxMap
+from flymirage_core.annotation.colours import colour_name, to_lab
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
 from flymirage_core.annotation.exploration import explore
 from flymirage_core.annotation.fusion import yaw_iou
+from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.targets import select_targets
+from flymirage_core.annotation.yolox import YoloxDetector
+from flymirage_core.language.looks import coloured
+from flymirage_core.language.scene_relations import Truth
 from flymirage_core.occupancy.grid import OccupancyGrid
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.pictures.box_overlay import draw_boxes
@@ -38,6 +49,7 @@ from flymirage_core.splats.cloud import GaussianCloud
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "annotation"))
 
 MIN_TRUE_SIZE = 0.2  # metres: smaller true objects are not counted as missed
+PIXEL_STEP = 4  # every fourth pixel, both ways, is looked at
 MIN_TRUE_PIXELS = 150  # over all views within d_th1 of its centre
 
 
@@ -51,57 +63,55 @@ class Scene:
     centre: np.ndarray
     truth: Sequence[Any]  # boxes with centre, size, yaw; empty if unknown
     openings: Sequence[np.ndarray] = ()  # (2, 3) corners of windows and doors: boxes there are neither right nor wrong
+    category: str = ""
 
 
 @dataclass(frozen=True)
-class Passes:
-    """What both passes gave."""
+class Seen:
+    """The views of both passes, and what the first gave."""
 
     first: BoxMap
-    second: BoxMap
     orbit_views: list[View]
     all_views: list[View]
-    groups: list[str]
-    seconds: tuple[float, float]  # CPU of each pass's annotation
+    seconds: float  # CPU of the first pass's annotation
 
 
-def run(scene: Scene, settings: Settings) -> Passes:
-    annotator = EmbeddedAnnotator(settings.annotation)
+def see_both_passes(scene: Scene, annotator: Annotator, settings: Settings) -> Seen:
     cameras, _ = orbit(scene.centre, settings.views)
     orbit_views = scene.see(cameras)
     started = time.process_time()
     first = annotator.annotate(orbit_views, math.inf)
-    first_seconds = time.process_time() - started
+    seconds = time.process_time() - started
     targets = select_targets(first, scene.centre, settings.targets)
-    rigs, groups = explore(scene.grid, scene.centre, targets, settings.exploration, view_intrinsics(settings.views))
-    views = orbit_views + scene.see(rigs)
-    started = time.process_time()
-    second = annotator.annotate(views, settings.targets.near_distance)
-    return Passes(first, second, orbit_views, views, groups, (first_seconds, time.process_time() - started))
+    rigs, _ = explore(scene.grid, scene.centre, targets, settings.exploration, view_intrinsics(settings.views))
+    return Seen(first, orbit_views, orbit_views + scene.see(rigs), seconds)
 
 
 @dataclass(frozen=True)
 class Score:
-    """Matches of a box map with the truth at one IoU."""
+    """Matches of boxes with the truth at one IoU."""
 
     pairs: list[tuple[int, int, float]]  # truth, box, IoU
     recall: float
     precision: float
-    centre_error: float
+    centre_error: float  # metres
 
 
-def score(
-    boxes: BoxMap, truth: Sequence[Any], counted: Sequence[bool], min_iou: float, openings: Sequence[np.ndarray] = ()
-) -> Score:
-    """One-to-one matches of the largest summed IoU; true objects that are not ``counted`` neither help nor harm."""
+def score_boxes(boxes: Sequence[Any], truth: Sequence[Any], min_iou: float) -> list[tuple[int, int, float]]:
+    """One-to-one matches (truth, box, IoU) of the largest summed IoU."""
     ious = np.array([[yaw_iou(t, b) for b in boxes] for t in truth]).reshape(len(truth), len(boxes))
     rows, columns = linear_sum_assignment(-np.where(ious >= min_iou, ious, 0))
-    pairs = [(int(t), int(b), float(ious[t, b])) for t, b in zip(rows, columns, strict=True) if ious[t, b] >= min_iou]
+    return [(int(t), int(b), float(ious[t, b])) for t, b in zip(rows, columns, strict=True) if ious[t, b] >= min_iou]
+
+
+def score(boxes: Sequence[Any], scene: Scene, counted: Sequence[bool], min_iou: float) -> Score:
+    """True objects that are not ``counted``, and boxes at doors and windows, neither help nor harm."""
+    pairs = score_boxes(boxes, scene.truth, min_iou)
     hits = sum(counted[t] for t, _, _ in pairs)
-    spare = sum(not counted[t] for t, _, _ in pairs)
     matched = {b for _, b, _ in pairs}
-    spare += sum(_in_opening(box, openings) for b, box in enumerate(boxes) if b not in matched)
-    errors = [np.linalg.norm(np.subtract(truth[t].centre, boxes.boxes[b].centre)) for t, b, _ in pairs]
+    spare = sum(not counted[t] for t, _, _ in pairs)
+    spare += sum(in_opening(box, scene.openings) for b, box in enumerate(boxes) if b not in matched)
+    errors = [np.linalg.norm(np.subtract(scene.truth[t].centre, boxes[b].centre)) for t, b, _ in pairs]
     return Score(
         pairs,
         hits / max(sum(counted), 1),
@@ -110,7 +120,7 @@ def score(
     )
 
 
-def _in_opening(box: Any, openings: Sequence[np.ndarray]) -> bool:
+def in_opening(box: Any, openings: Sequence[np.ndarray]) -> bool:
     """Whether a flat box's middle lies in a window or a door."""
     return min(box.size) < 0.2 and any(
         (o[0] - 0.15 <= box.centre).all() and (box.centre <= o[1] + 0.15).all() for o in openings
@@ -129,32 +139,27 @@ def countable(truth: Sequence[Any], views: Iterable[View], max_distance: float) 
             c, s = np.cos(box.yaw), np.sin(box.yaw)
             local = (points - box.centre) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
             pixels[i] += int((np.abs(local) < np.divide(box.size, 2) + 0.02).all(axis=1).sum())
+    pixels *= PIXEL_STEP**2
     return [bool(max(box.size) >= MIN_TRUE_SIZE and n >= MIN_TRUE_PIXELS) for box, n in zip(truth, pixels, strict=True)]
 
 
 def _near_points(view: View, max_distance: float) -> np.ndarray:
     k, depth = view.camera.intrinsics, view.picture.depth
-    u, v = np.meshgrid(np.arange(k.width) + 0.5, np.arange(k.height) + 0.5)
+    depth = depth[::PIXEL_STEP, ::PIXEL_STEP]
+    u, v = np.meshgrid(np.arange(0, k.width, PIXEL_STEP) + 0.5, np.arange(0, k.height, PIXEL_STEP) + 0.5)
     rays = np.stack([(u - k.cx) / k.fx, (v - k.cy) / k.fy, np.ones_like(u)], axis=-1)
     near = (depth > 0) & (depth * np.linalg.norm(rays, axis=-1) < max_distance)
     return (rays * depth[..., None])[near] @ view.camera.T_world_camera[:3, :3].T + view.camera.position
 
 
-def splat_scene(
-    name: str,
-    cloud: GaussianCloud,
-    centre: np.ndarray,
-    settings: Settings,
-    truth: Sequence[Any] = (),
-    openings: Sequence[np.ndarray] = (),
-) -> Scene:
+def splat_scene(name: str, cloud: GaussianCloud, centre: np.ndarray, settings: Settings, **known: Any) -> Scene:
     rasterizer = CpuRasterizer(settings.threads)
     grid = occupancy_from_splats(cloud, centre, settings.occupancy)
 
     def see(cameras: Sequence[Camera]) -> list[View]:
         return [View(c, p) for c, p in zip(cameras, rasterizer.render(cloud, cameras), strict=True)]
 
-    return Scene(name, see, grid, centre, truth, openings)
+    return Scene(name, see, grid, centre, **({"truth": ()} | known))
 
 
 def generated(key: str, settings: Settings) -> Scene:
@@ -170,7 +175,9 @@ def generated(key: str, settings: Settings) -> Scene:
         wall = room.walls[o.wall]
         ends = np.array([wall.origin + wall.along * o.left, wall.origin + wall.along * o.right])  # (2, 2)
         openings.append(np.array([[*ends.min(axis=0), o.bottom], [*ends.max(axis=0), o.top]]))
-    return splat_scene(key, world.cloud, world.centre, settings, truth.objects, openings)
+    category = f"{description.category} / {description.subcategory}"
+    known = {"truth": truth.objects, "openings": openings, "category": category}
+    return splat_scene(key, world.cloud, world.centre, settings, **known)
 
 
 def captured(path: str, settings: Settings) -> Scene:
@@ -195,65 +202,192 @@ def analytic(seed: str, settings: Settings) -> Scene:
 
 
 MAKERS = {"analytic": analytic, "generated": generated, "captured": captured}
-HEADER = "scene           pass   views boxes  true   R.25   P.25    R.5    P.5    cm  CPU s"
 
 
-def report(scene: Scene, passes: Passes, settings: Settings) -> None:
-    counted = countable(scene.truth, passes.all_views, settings.targets.near_distance)
-    for name, boxes, views, seconds in (
-        ("1", passes.first, passes.orbit_views, passes.seconds[0]),
-        ("1+2", passes.second, passes.all_views, passes.seconds[1]),
-    ):
-        if not scene.truth:
-            print(f"{scene.name:<16}{name:<6}{len(views):>6}{len(boxes):>6}{'no truth':>47}{seconds:>7.1f}", flush=True)
+def measured(scene: Scene, seen: Seen, second: BoxMap, settings: Settings) -> dict[str, Any]:
+    """All figures of one world."""
+    counted = countable(scene.truth, seen.all_views, settings.targets.near_distance)
+    row: dict[str, Any] = {"true": sum(counted), "views": len(seen.all_views), "boxes": len(second)}
+    for name, boxes in (("1", seen.first), ("2", second)):
+        loose, strict = (score(boxes.boxes, scene, counted, iou) for iou in (0.25, 0.5))
+        row |= {f"R25_{name}": loose.recall, f"P25_{name}": loose.precision, f"cm_{name}": 100 * loose.centre_error}
+        row |= {f"R50_{name}": strict.recall, f"P50_{name}": strict.precision}
+    pairs = [(scene.truth[t], second.boxes[b]) for t, b, _ in score_boxes(second.boxes, scene.truth, 0.25)]
+    return row | names_and_colours([(t, b) for t, b in pairs if hasattr(t, "noun")])
+
+
+def names_and_colours(pairs: Sequence[tuple[Any, Any]]) -> dict[str, int]:
+    """Counts over matched (true object, box) pairs; a family's name is the last word of the true noun."""
+    right = sum(b.label == t.noun for t, b in pairs)
+    family = sum(b.label != t.noun and b.label == t.noun.split()[-1] for t, b in pairs)
+    generic = sum(b.label == UNKNOWN for _, b in pairs)
+    colours = sum(coloured(expected_colour(t.colour), b.colour) is not Truth.NO for t, b in pairs)
+    return {"matched": len(pairs), "noun": right, "family": family, "generic": generic, "colour": colours}
+
+
+def expected_colour(paint: str) -> str:
+    """The basic name of a paint's own colour; `coloured` says whether the seen name may be used for it."""
+    from flymirage_core.worldgen.colours import linear_rgb
+
+    linear = np.array(linear_rgb(paint))
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return colour_name(to_lab([255 * srgb])[0])
+
+
+def prototype_figures(path: Path, scene: Scene, seen: Seen, settings: Settings) -> dict[str, float]:
+    """CPU seconds, recall and precision of the prototype's second pass on the same views."""
+    specification = importlib.util.spec_from_file_location("prototype", path)
+    assert specification is not None and specification.loader is not None
+    prototype = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(prototype)
+    frames = [(v.picture.rgb, v.picture.depth, v.camera.T_world_camera) for v in seen.all_views]
+    intrinsics = seen.all_views[0].camera.intrinsics.matrix
+    distance = settings.targets.near_distance
+    started = time.process_time()
+    answer = prototype.annotate(frames, intrinsics, distance)
+    seconds = time.process_time() - started
+    rows = answer[0] if isinstance(answer, tuple) else answer
+    boxes = [PlainBox(tuple(map(float, b["c"])), tuple(map(float, b["s"])), float(b["yaw"])) for b in rows]
+    loose = score(boxes, scene, countable(scene.truth, seen.all_views, distance), 0.25)
+    return {"prototype_s": seconds, "prototype_R25": loose.recall, "prototype_P25": loose.precision}
+
+
+@dataclass(frozen=True)
+class PlainBox:
+    centre: tuple[float, ...]
+    size: tuple[float, ...]
+    yaw: float
+
+
+def world_keys(count: int) -> list[str]:
+    """Keys of ``count`` worlds that nothing was tuned on, spread evenly over the taxonomy's categories."""
+    from flymirage_core.scene.taxonomy import standard_taxonomy
+
+    taxonomy = standard_taxonomy()
+    wanted = -(-count // len(taxonomy.categories))
+    seen: dict[str, int] = {}
+    keys: list[str] = []
+    number = 0
+    while len(keys) < count:
+        number += 1
+        category, _ = taxonomy.pick(f"bench-{number}")
+        if seen.get(category, 0) < wanted:
+            seen[category] = seen.get(category, 0) + 1
+            keys.append(f"bench-{number}")
+    return keys
+
+
+def measure_worlds(arguments: argparse.Namespace, annotator: Annotator, settings: Settings) -> None:
+    done = {json.loads(line)["world"] for line in arguments.results.read_text().splitlines()}
+    for key in world_keys(arguments.count):
+        if key in done:
             continue
-        loose, strict = (score(boxes, scene.truth, counted, iou, scene.openings) for iou in (0.25, 0.5))
-        print(
-            f"{scene.name:<16}{name:<6}{len(views):>6}{len(boxes):>6}{sum(counted):>6}{loose.recall:>7.2f}"
-            f"{loose.precision:>7.2f}{strict.recall:>7.2f}{strict.precision:>7.2f}"
-            f"{100 * loose.centre_error:>6.1f}{seconds:>7.1f}",
-            flush=True,
-        )
+        scene = generated(key, settings)
+        seen = see_both_passes(scene, annotator, settings)
+        started = time.process_time()
+        second = annotator.annotate(seen.all_views, settings.targets.near_distance)
+        row = {"world": key, "category": scene.category, "s_1": seen.seconds, "s_2": time.process_time() - started}
+        row |= measured(scene, seen, second, settings)
+        row["MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+        if arguments.prototype:
+            row |= prototype_figures(arguments.prototype, scene, seen, settings)
+        with arguments.results.open("a") as file:
+            file.write(json.dumps(row) + "\n")
+        print(key, {k: round(v, 2) if isinstance(v, float) else v for k, v in row.items()}, flush=True)
 
 
-def write_pictures(folder: Path, scene: Scene, passes: Passes, max_distance: float) -> None:
-    """Overlays: boxes of pass 2 in six views of the orbit and in two of the exploration."""
-    folder.mkdir(parents=True, exist_ok=True)
-    views = passes.orbit_views
-    picks = [views[k] for k in range(len(views) // 3, 2 * len(views) // 3, 2)]
-    rigs = passes.all_views[len(views) :]
-    picks += [rigs[k] for k in np.linspace(0, len(rigs) - 1, 6).astype(int)] if rigs else []
-    tiles = [
-        cv2.resize(draw_boxes(big(v), _big(v.camera), passes.second, 2 * max_distance), None, fx=1, fy=1) for v in picks
+COLUMNS = ("R25_1", "P25_1", "R50_1", "R25_2", "P25_2", "R50_2", "P50_2")
+
+
+def table(rows: Sequence[dict[str, Any]]) -> str:
+    """Markdown: a line a world, then the means; nouns and colours are shares of all matched boxes."""
+    head = ["world", "true", *COLUMNS, "cm", "noun", "colour", "s", "prototype s", "prototype R/P"]
+    lines = [head, ["---"] * len(head), *(_line(f"{r['category']}", [r]) for r in rows), _line("**all**", rows)]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def _line(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
+    def mean(key: str) -> float:
+        return float(np.mean([r[key] for r in rows if key in r] or [math.nan]))
+
+    matched = max(sum(r["matched"] for r in rows), 1)
+    named = sum(r["noun"] + r["family"] for r in rows) / matched
+    colour = sum(r["colour"] for r in rows) / matched
+    return [
+        name,
+        str(sum(r["true"] for r in rows)),
+        *(f"{mean(c):.2f}" for c in COLUMNS),
+        f"{mean('cm_2'):.1f}",
+        f"{named:.2f}",
+        f"{colour:.2f}",
+        f"{mean('s_1') + mean('s_2'):.1f}",
+        f"{mean('prototype_s'):.1f}",
+        f"{mean('prototype_R25'):.2f}/{mean('prototype_P25'):.2f}",
     ]
+
+
+def write_pictures(folder: Path, scene: Scene, seen: Seen, boxes: BoxMap, max_distance: float) -> None:
+    """Overlays: boxes of pass 2 in six views of the orbit and in six of the exploration."""
+    folder.mkdir(parents=True, exist_ok=True)
+    views = seen.orbit_views
+    picks = [views[k] for k in range(len(views) // 3, 2 * len(views) // 3, 2)]
+    rigs = seen.all_views[len(views) :]
+    picks += [rigs[k] for k in np.linspace(0, len(rigs) - 1, 6).astype(int)] if rigs else []
+    tiles = [draw_boxes(_big_picture(v), _big_camera(v.camera), boxes, 2 * max_distance) for v in picks]
     tiles += [np.zeros_like(tiles[0])] * (-len(tiles) % 2)
     sheet = np.vstack([np.hstack(tiles[k : k + 2]) for k in range(0, len(tiles), 2)])
     cv2.imwrite(str(folder / f"{scene.name.replace(' ', '_')}.png"), sheet[:, :, ::-1])
 
 
-def big(view: View) -> np.ndarray:
+def _big_picture(view: View) -> np.ndarray:
     return cv2.resize(view.picture.rgb, None, fx=2, fy=2, interpolation=cv2.INTER_LINEAR)
 
 
-def _big(camera: Camera) -> Camera:
+def _big_camera(camera: Camera) -> Camera:
     k = camera.intrinsics
     return Camera(type(k)(2 * k.width, 2 * k.height, 2 * k.fx, 2 * k.fy, 2 * k.cx, 2 * k.cy), camera.T_world_camera)
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("kind", choices=sorted(MAKERS))
-    parser.add_argument("scenes", nargs="+")
-    parser.add_argument("--pictures", type=Path)
-    arguments = parser.parse_args()
-    settings = Settings()
-    print(HEADER)
+def show(arguments: argparse.Namespace, annotator: Annotator, settings: Settings) -> None:
     for name in arguments.scenes:
         scene = MAKERS[arguments.kind](name, settings)
-        passes = run(scene, settings)
-        report(scene, passes, settings)
+        seen = see_both_passes(scene, annotator, settings)
+        started = time.process_time()
+        boxes = annotator.annotate(seen.all_views, settings.targets.near_distance)
+        seconds = time.process_time() - started
+        row = measured(scene, seen, boxes, settings) if scene.truth else {"boxes": len(boxes)}
+        figures = " ".join(f"{k} {v:.2f}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())
+        print(f"{scene.name}: {figures} CPU {seen.seconds:.1f} + {seconds:.1f} s", flush=True)
         if arguments.pictures:
-            write_pictures(arguments.pictures, scene, passes, settings.targets.near_distance)
+            write_pictures(arguments.pictures, scene, seen, boxes, settings.targets.near_distance)
+        if not scene.truth:
+            for b in boxes:
+                size = " x ".join(f"{s:.2f}" for s in b.size)
+                print(
+                    f"  {b.object_id:3} {b.label} ({b.label_source} {b.label_score:.2f}) {b.colour} {b.material} {size}"
+                )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", choices=["worlds", *sorted(MAKERS)])
+    parser.add_argument("scenes", nargs="*")
+    parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--detector", type=Path)
+    parser.add_argument("--results", type=Path)
+    parser.add_argument("--prototype", type=Path)
+    parser.add_argument("--count", type=int, default=20)
+    arguments = parser.parse_args()
+    settings = Settings()
+    annotator = EmbeddedAnnotator(
+        settings.annotation, YoloxDetector(arguments.detector) if arguments.detector else None
+    )
+    if arguments.kind != "worlds":
+        show(arguments, annotator, settings)
+        return
+    arguments.results.touch()
+    measure_worlds(arguments, annotator, settings)
+    print(table([json.loads(line) for line in arguments.results.read_text().splitlines()]))
 
 
 if __name__ == "__main__":

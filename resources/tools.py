@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 from flymirage_core.annotation.annotator import Annotator
-from flymirage_core.annotation.embedded import EmbeddedAnnotator
 from flymirage_core.language.judge import FrameJudge, MeasuredJudge
 from flymirage_core.language.prompter import OfflinePrompter, Prompter
 from flymirage_core.rendering.cpu import CpuRasterizer
@@ -13,6 +12,7 @@ from flymirage_core.scene.writer import OfflineSceneWriter, SceneWriter
 from flymirage_core.settings import Settings
 from flymirage_core.worldgen.model import OfflinePainter, OfflineWorldModel
 from flymirage_core.worldgen.ports import ImagePainter, WorldModel
+from resources.annotators import choose_annotator
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ def choose_tools(settings: Settings) -> Tools:
         image_painter=OfflinePainter(rasterizer, settings.generation),
         world_model=OfflineWorldModel(settings.generation),
         rasterizer=rasterizer,
-        annotator=EmbeddedAnnotator(settings.annotation),
+        annotator=choose_annotator(settings),
         frame_judge=MeasuredJudge(settings.verdict, settings.planner),
         prompter=OfflinePrompter(),
     )

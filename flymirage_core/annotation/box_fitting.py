@@ -2,12 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.annotation.fusion import footprint_overlap
+from flymirage_core.annotation.fusion import convex_overlap, footprint_corners, footprint_overlap
 from flymirage_core.annotation.room_structure import RoomStructure
 
 Float32 = NDArray[np.float32]
@@ -32,6 +32,8 @@ PARALLEL: Final = 0.97
 """Cosine from which a side runs along a wall."""
 MIN_GAP: Final = 0.02
 """Metres; smaller gaps are none."""
+FACE_SLACK: Final = 0.03
+"""Metres that a face may lie above the bottom of what stands on it."""
 SUPPORT_SLACK: Final = 0.10
 """Metres that a support may reach above the bottom of what it carries."""
 MAX_WALL_DROP: Final = 0.3
@@ -40,6 +42,8 @@ COARSE_YAWS: Final = np.radians(np.arange(0, 90, 6.0))
 FINE_YAWS: Final = np.radians([-4.5, -3, -1.5, 0, 1.5, 3, 4.5])
 MAX_WALL_GAP: Final = 0.15
 """Metres to a wall that are taken to belong to the thing: its back is not seen."""
+MAX_CARRIED_GAP: Final = 0.075
+"""... for what stands on another thing: no more than what is culled with the wall."""
 MAX_TALL_WALL_GAP: Final = 0.75
 MAX_TALL_DEPTH: Final = 0.85
 TALL: Final = 1.35
@@ -83,6 +87,16 @@ class Footprint:
     def share_inside(self, points: Float32 | Float64, margin: float) -> float:
         """Share of the points (N, 3) whose plan lies inside, grown by ``margin`` on each side."""
         return float((np.abs(self.local(points)) < self.size / 2 + margin).all(axis=1).mean())
+
+
+class LevelFace(Protocol):
+    """A broad face that looks up: its height and its plan."""
+
+    @property
+    def level(self) -> float: ...
+
+    @property
+    def plan(self) -> Footprint: ...
 
 
 @dataclass(frozen=True)
@@ -145,10 +159,13 @@ def _padded_area(footprint: Footprint) -> float:
     return float((footprint.size + SURFACE_MARGIN).prod())
 
 
-def fit_box(points: Float32, to_camera: Float32, members: NDArray[np.intp], structure: RoomStructure) -> FittedBox:
+def fit_box(
+    points: Float32, to_camera: Float32, members: NDArray[np.intp], structure: RoomStructure, max_wall_gap: float
+) -> FittedBox:
     """The box round some points, down to the floor if it nearly touches it, and back to a wall close behind.
 
     ``points``: (N, 3). ``to_camera``: (N, 3) directions to where each was seen from. ``members``: (M,) its points.
+    ``max_wall_gap``: metres, `MAX_WALL_GAP` or `MAX_CARRIED_GAP`.
     """
     cloud = points[members]
     plan = _with_unseen_half(fit_footprint(cloud, structure.yaw), to_camera[members])
@@ -163,7 +180,7 @@ def fit_box(points: Float32, to_camera: Float32, members: NDArray[np.intp], stru
         plan.yaw,
         members,
     )
-    return _reaching_wall(box, structure, tall=top - floor > TALL and bottom <= floor)
+    return _reaching_wall(box, structure, max_wall_gap, tall=top - floor > TALL and bottom <= floor)
 
 
 def _with_unseen_half(plan: Footprint, to_camera: Float32) -> Footprint:
@@ -183,7 +200,7 @@ def _with_unseen_half(plan: Footprint, to_camera: Float32) -> Footprint:
     return Footprint(plan.centre - shift, size, plan.yaw)
 
 
-def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> FittedBox:
+def _reaching_wall(box: FittedBox, structure: RoomStructure, max_gap: float, tall: bool) -> FittedBox:
     """The box grown to walls right behind it, its unseen back."""
     for wall in structure.walls:
         for axis in (0, 1):
@@ -193,7 +210,7 @@ def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> Fitt
             depth = box.size[axis]
             gap = float(np.dot(wall.normal, box.centre[:2])) - wall.back - depth / 2
             guessed = tall and depth < SEEN_DEPTH and depth + gap < MAX_TALL_DEPTH
-            if MIN_GAP < gap < (MAX_TALL_WALL_GAP if guessed else MAX_WALL_GAP):
+            if MIN_GAP < gap < (MAX_TALL_WALL_GAP if guessed else max_gap):
                 size = list(box.size)
                 size[axis] += gap
                 x, y = np.array(box.centre[:2]) - wall.normal * gap / 2
@@ -201,9 +218,27 @@ def _reaching_wall(box: FittedBox, structure: RoomStructure, tall: bool) -> Fitt
     return box
 
 
-def settle(boxes: Sequence[FittedBox], structure: RoomStructure) -> list[FittedBox]:
-    """Nothing floats: boxes go down to the support below them, or up to the ceiling that they hang from."""
-    return [_settled(box, boxes, structure) for box in boxes]
+def settle(boxes: Sequence[FittedBox], structure: RoomStructure, faces: Sequence[LevelFace]) -> list[FittedBox]:
+    """Nothing floats: boxes go down to the support below them, or up to the ceiling that they hang from.
+
+    ``faces`` are the broad level ones; where a box stands on one of them, that is where its bottom is.
+    """
+    return [_on_face(_settled(box, boxes, structure), faces, structure) for box in boxes]
+
+
+def _on_face(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStructure) -> FittedBox:
+    """The box with its bottom on the level face right below it: the lowest centimetres are cut away with the face."""
+    if box.bottom - structure.floor <= ON_FLOOR or box.hanging:
+        return box
+    corners, area = footprint_corners(box), box.size[0] * box.size[1]
+    levels = [
+        face.level
+        for face in faces
+        if -FACE_SLACK < box.bottom - face.level < SUPPORT_SLACK
+        and face.level < box.top - 2 * FACE_SLACK
+        and convex_overlap(corners, face.plan.corners) > MIN_SUPPORT_SHARE * area
+    ]
+    return _between(box, max(levels), box.top) if levels else box
 
 
 def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> FittedBox:

@@ -26,6 +26,7 @@ class ObjectBox:
     supporting_frames: int  # pictures that saw it
     nearest_camera_distance: float  # metres, from the optical centre of the nearest supporting picture
     annotator: str  # name and version: "embedded 1", "boxer d364743"
+    label_score: float = 0.0  # 0..1: how sure the label is; 0 where it is "object"
 
     @property
     def rotation(self) -> NDArray[np.float64]:
@@ -73,6 +74,7 @@ BOX_SCHEMA = pa.schema(
         ("supporting_frames", pa.int32()),
         ("nearest_camera_distance", pa.float64()),
         ("annotator", pa.string()),
+        ("label_score", pa.float64()),
     ]
 )
 

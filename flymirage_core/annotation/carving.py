@@ -31,12 +31,13 @@ def solid(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
     return np.asarray((votes[:, 0] >= min(MIN_HITS, len(frames))) & (votes[:, 1] <= votes[:, 0]))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Detections:
-    """How an object was seen: number of views, and metres from its centre to the nearest of them."""
+    """How an object was seen: number of views, metres from its centre to the nearest, and its points in each frame."""
 
     views: int
     nearest: float
+    hits: NDArray[np.int64]  # (F,) points that each frame hit; 0 where the frame is too far away or hit too few
 
 
 def detections(
@@ -52,14 +53,16 @@ def detections(
     owned = np.flatnonzero(owner >= 0)
     centres = np.array([box.centre for box in boxes]).reshape(-1, 3)
     views, nearest = np.zeros(len(boxes), int), np.full(len(boxes), np.inf)
-    for frame in frames:
+    found = np.zeros((len(boxes), len(frames)), np.int64)
+    for f, frame in enumerate(frames):
         hits = np.zeros(len(boxes), np.int64)
         _count_hits(points[owned], owner[owned], frame.depth, *_projection(frame), hits)
         distance = np.linalg.norm(centres - frame.camera.position, axis=1)
         seen = (hits >= MIN_SUPPORT_POINTS) & (distance <= max_distance)
         views += seen
+        found[:, f] = np.where(seen, hits, 0)
         nearest = np.where(seen, np.minimum(nearest, distance), nearest)
-    return [Detections(int(v), float(d)) for v, d in zip(views, nearest, strict=True)]
+    return [Detections(int(v), float(d), h) for v, d, h in zip(views, nearest, found, strict=True)]
 
 
 def _projection(frame: Frame) -> tuple[Float32, Float32]:

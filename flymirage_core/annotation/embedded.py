@@ -1,7 +1,8 @@
-"""`EmbeddedAnnotator`: objects from pixels and depth alone, with no network, no GPU and no learned weights.
+"""`EmbeddedAnnotator`: objects from pixels and depth alone, with no network and no GPU.
 
 Fuse the pixels of all views, take the building away, cut what is left by support and colour, join what belongs
-together, fit boxes, name them. Each step is a file of this room.
+together, fit boxes, name them by a small recogniser and, if its weights were fetched, a 2D detector. Each step is a
+file of this room.
 """
 
 from collections.abc import Iterable, Sequence
@@ -10,16 +11,26 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.annotation.box_fitting import ON_FLOOR, FittedBox, fit_box, settle
+from flymirage_core.annotation.appearance import Observation, observe, window_of
+from flymirage_core.annotation.box_fitting import (
+    MAX_CARRIED_GAP,
+    MAX_WALL_GAP,
+    ON_FLOOR,
+    FittedBox,
+    fit_box,
+    settle,
+)
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.annotation.carving import Detections, detections, solid
 from flymirage_core.annotation.colours import colour_name, colour_step, shading_free, to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
-from flymirage_core.annotation.labels import Support, is_plant, name_box, name_plant
+from flymirage_core.annotation.labels import Support
 from flymirage_core.annotation.merging import merge_parts
-from flymirage_core.annotation.normals import surface_normals, surface_variation
+from flymirage_core.annotation.naming import Name, named
+from flymirage_core.annotation.normals import surface_normals
 from flymirage_core.annotation.parts import PartSet, Surface
+from flymirage_core.annotation.picture_votes import Vote, look_at, votes
 from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.segmentation import (
@@ -27,8 +38,9 @@ from flymirage_core.annotation.segmentation import (
     neighbour_edges,
     smoothed_colours,
 )
-from flymirage_core.annotation.supports import standing_things
+from flymirage_core.annotation.supports import Face, level_faces, standing_things
 from flymirage_core.annotation.wall_objects import wall_objects
+from flymirage_core.annotation.yolox import YoloxDetector
 from flymirage_core.rendering.views import View
 from flymirage_core.settings import AnnotationSettings
 
@@ -41,8 +53,6 @@ STRUCTURE_RANGE: Final = 12.0
 NORMAL_RADIUS: Final = 3.0
 """Voxels within which points shape a normal."""
 NORMAL_NEIGHBOURS: Final = 16
-VARIATION_RADIUS: Final = 0.09
-"""Metres within which roughness is judged."""
 STRUCTURE_NEIGHBOURS: Final = 12
 HALF_AN_OBJECT: Final = 0.5
 """Metres that an object may reach beyond its centre: so much farther than the limit its own pixels may lie."""
@@ -50,6 +60,9 @@ RESTING: Final = 0.1
 """Metres between a thing and what carries it."""
 AT_WALL: Final = 0.15
 DUPLICATE_IOU: Final = 0.5
+VIEWS_TRIED: Final = 16
+"""Frames with the most points of a box, among which the best views are sought."""
+VIEWS_KEPT: Final = 6
 FULL_EVIDENCE: Final = 12
 """Supporting views from which more add nothing to the score."""
 
@@ -57,11 +70,15 @@ FULL_EVIDENCE: Final = 12
 class EmbeddedAnnotator:
     """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
 
-    name = "embedded"
-    version = "1"
+    version = "2"
 
-    def __init__(self, settings: AnnotationSettings) -> None:
+    def __init__(self, settings: AnnotationSettings, detector: YoloxDetector | None = None) -> None:
         self.settings = settings
+        self.detector = detector
+
+    @property
+    def name(self) -> str:
+        return "embedded" if self.detector is None else f"embedded + {self.detector.name}"
 
     def annotate(self, views: Iterable[View], max_distance: float) -> BoxMap:
         """See `Annotator.annotate`.
@@ -71,11 +88,46 @@ class EmbeddedAnnotator:
         `HALF_AN_OBJECT` are not looked at.
         """
         frames = frames_of(views)
+        found = self.observations(frames, max_distance)
+        names = named([thing for thing, _ in found], self._votes(found, frames))
+        annotator = f"{self.name} {self.version}"
+        return BoxMap(
+            tuple(
+                _object_box(k, thing, name, seen, annotator)
+                for k, ((thing, seen), name) in enumerate(zip(found, names, strict=True))
+            )
+        )
+
+    def observations(self, frames: Sequence[Frame], max_distance: float) -> list[tuple[Observation, Detections]]:
+        """The boxes of the objects, with what names are judged by and how each was seen; see `annotate`."""
         structure = self.structure(frames)
         cloud = fuse_points(frames, self.settings.voxel, max_distance + HALF_AN_OBJECT)
         cloud = _solid_cloud(cloud, structure, frames)
         boxes = propose_boxes(cloud, structure, self.settings.voxel)
-        return self._described(boxes, cloud, structure, frames, max_distance)
+        support = detections(cloud.points, boxes, frames, max_distance)
+        seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
+        rivals = [box for box, _ in seen]
+        return [
+            (
+                observe(
+                    box,
+                    support_of(box, rivals, structure),
+                    cloud,
+                    structure,
+                    frames,
+                    best_views(box, found.hits, frames),
+                ),
+                found,
+            )
+            for box, found in seen
+        ]
+
+    def _votes(self, found: Sequence[tuple[Observation, Detections]], frames: Sequence[Frame]) -> list[Vote | None]:
+        """What the 2D detector says about each box, if there is one."""
+        if self.detector is None or not found:
+            return [None] * len(found)
+        hits = np.stack([seen.hits for _, seen in found])  # (B, F)
+        return votes([thing.box for thing, _ in found], hits, frames, look_at(frames, self.detector))
 
     def structure(self, frames: Sequence[Frame]) -> RoomStructure:
         """The building, from a coarse cloud of views spread over the sequence."""
@@ -85,23 +137,6 @@ class EmbeddedAnnotator:
         normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
         return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL)
 
-    def _described(
-        self,
-        boxes: Sequence[FittedBox],
-        cloud: FusedPoints,
-        structure: RoomStructure,
-        frames: Sequence[Frame],
-        max_distance: float,
-    ) -> BoxMap:
-        support = detections(cloud.points, boxes, frames, max_distance)
-        seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
-        annotator = f"{self.name} {self.version}"
-        rivals = [box for box, _ in seen]
-        described = [
-            _object_box(k, box, rivals, cloud, structure, found, annotator) for k, (box, found) in enumerate(seen)
-        ]
-        return BoxMap(tuple(described))
-
 
 def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
     """Boxes of the objects in a cloud of solid points, floor to ceiling and then by place."""
@@ -109,10 +144,12 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     normals = surface_normals(cloud.points[objects], cloud.to_camera[objects], NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS)
     bulk = ~structure.is_wall_skin(cloud.points[objects], normals)
     objects = objects[bulk]
-    surface = _surface(cloud[objects], normals[bulk], structure, voxel)
-    parts = colour_parts(surface)
+    normals = normals[bulk]
+    edges = neighbour_edges(cloud.voxels[objects])
+    faces = level_faces(cloud.points[objects], normals, edges, structure.floor, structure.yaw)
+    parts = colour_parts(_surface(cloud[objects], normals, edges, faces, structure, voxel))
     merge_parts(parts)
-    boxes = settle(_fitted(parts, objects, cloud, structure), structure)
+    boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
     boxes = [box for box in boxes if is_thing(box, structure)]
     boxes += wall_objects(cloud.points, shading_free(to_lab(cloud.colours)), structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)
@@ -127,9 +164,15 @@ def _solid_cloud(cloud: FusedPoints, structure: RoomStructure, frames: Sequence[
     return cloud[kept]
 
 
-def _surface(cloud: FusedPoints, normals: Float32, structure: RoomStructure, voxel: float) -> Surface:
-    edges = neighbour_edges(cloud.voxels)
-    things = standing_things(cloud.points, normals, edges, structure.floor, structure.yaw)
+def _surface(
+    cloud: FusedPoints,
+    normals: Float32,
+    edges: NDArray[np.intp],
+    faces: Sequence[Face],
+    structure: RoomStructure,
+    voxel: float,
+) -> Surface:
+    things = standing_things(cloud.points, edges, faces)
     edges = edges[things[edges[:, 0]] == things[edges[:, 1]]]
     colours = smoothed_colours(shading_free(to_lab(cloud.colours)), edges) if len(cloud) else cloud.colours
     return Surface(
@@ -147,9 +190,15 @@ def _surface(cloud: FusedPoints, normals: Float32, structure: RoomStructure, vox
 
 def _fitted(parts: PartSet, objects: NDArray[np.intp], cloud: FusedPoints, structure: RoomStructure) -> list[FittedBox]:
     return [
-        fit_box(cloud.points, cloud.to_camera, objects[parts.parts[k].members], structure)
-        for k in sorted(parts.parts)
-        if len(parts.parts[k]) >= MIN_OBJECT_POINTS
+        fit_box(
+            cloud.points,
+            cloud.to_camera,
+            objects[part.members],
+            structure,
+            MAX_CARRIED_GAP if part.thing else MAX_WALL_GAP,
+        )
+        for _, part in sorted(parts.parts.items())
+        if len(part) >= MIN_OBJECT_POINTS
     ]
 
 
@@ -162,37 +211,37 @@ def _without_duplicates(boxes: Sequence[FittedBox]) -> list[FittedBox]:
     return kept
 
 
-def _object_box(
-    number: int,
-    box: FittedBox,
-    boxes: Sequence[FittedBox],
-    cloud: FusedPoints,
-    structure: RoomStructure,
-    found: Detections,
-    annotator: str,
-) -> ObjectBox:
-    lab = to_lab(cloud.colours[box.members])  # (M, 3)
-    support = _support_of(box, boxes, structure)
-    variation = surface_variation(cloud.points[box.members], VARIATION_RADIUS, NORMAL_NEIGHBOURS)
-    plant = not box.on_wall and is_plant(lab, variation)
-    label = name_plant(box.size, support) if plant else name_box(box.size, support)
+def best_views(box: FittedBox, hits: NDArray[np.int64], frames: Sequence[Frame]) -> list[int]:
+    """Indices of the frames that show most of the box: many of its points (``hits`` (F,)) and large, best first."""
+    candidates = [int(i) for i in np.argsort(-hits, kind="stable")[:VIEWS_TRIED] if hits[i]]
+
+    def shown(i: int) -> float:
+        window = window_of(box, frames[i])
+        return 0.0 if window is None else float(hits[i] * np.sqrt((window[2] - window[0]) * (window[3] - window[1])))
+
+    return sorted(candidates, key=shown, reverse=True)[:VIEWS_KEPT]
+
+
+def _object_box(number: int, thing: Observation, name: Name, found: Detections, annotator: str) -> ObjectBox:
+    box = thing.box
     return ObjectBox(
         object_id=number,
-        label=label.noun,
+        label=name.noun,
         centre=box.centre,
         size=box.size,
         yaw=box.yaw,
-        score=float((label.fit + min(1.0, found.views / FULL_EVIDENCE)) / 2),
-        label_source="colour and roughness" if plant else "size_prior",
-        colour=colour_name(np.median(lab, axis=0)),
-        material="",
+        score=float((name.score + min(1.0, found.views / FULL_EVIDENCE)) / 2),
+        label_source=name.source,
+        colour=colour_name(np.median(thing.lab, axis=0)),
+        material=name.material,
         supporting_frames=found.views,
         nearest_camera_distance=found.nearest,
         annotator=annotator,
+        label_score=name.score,
     )
 
 
-def _support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> Support:
+def support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> Support:
     """What a box rests on, judged from its place."""
     if box.on_wall:
         return Support.WALL

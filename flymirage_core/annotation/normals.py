@@ -24,12 +24,7 @@ def surface_normals(points: Float32, to_camera: Float32, radius: float, neighbou
         radius: metres within which points are neighbours.
         neighbours: most that are used.
     """
-    normals = np.zeros((len(points), 3), np.float32)
-    for part, counts, covariances in _neighbourhoods(points, radius, neighbours):
-        normal = np.linalg.eigh(covariances)[1][:, :, 0]  # (B, 3) of the least eigenvalue
-        normal *= np.where((normal * to_camera[part]).sum(axis=1) < 0, -1, 1)[:, None]
-        normals[part] = np.where((counts >= MIN_NEIGHBOURS)[:, None], normal, 0)
-    return normals
+    return surface_shape(points, to_camera, radius, neighbours)[0]
 
 
 def surface_variation(points: Float32, radius: float, neighbours: int) -> Float32:
@@ -37,12 +32,19 @@ def surface_variation(points: Float32, radius: float, neighbours: int) -> Float3
 
     0 on a plane, about 0.02 on a vase, 0.1 in leaves, 1/3 in a cloud without direction; 0 where points are too few.
     """
-    variation = np.zeros(len(points), np.float32)
+    return surface_shape(points, np.zeros_like(points), radius, neighbours)[1]
+
+
+def surface_shape(points: Float32, to_camera: Float32, radius: float, neighbours: int) -> tuple[Float32, Float32]:
+    """`surface_normals` (N, 3) and `surface_variation` (N,) at once."""
+    normals, variation = np.zeros((len(points), 3), np.float32), np.zeros(len(points), np.float32)
     for part, counts, covariances in _neighbourhoods(points, radius, neighbours):
-        values = np.linalg.eigvalsh(covariances)  # (B, 3) ascending
-        share = values[:, 0] / np.maximum(values.sum(axis=1), 1e-12)
-        variation[part] = np.where(counts >= MIN_NEIGHBOURS, share, 0)
-    return variation
+        values, vectors = np.linalg.eigh(covariances)  # (B, 3) ascending, (B, 3, 3)
+        normal = vectors[:, :, 0] * np.where((vectors[:, :, 0] * to_camera[part]).sum(axis=1) < 0, -1, 1)[:, None]
+        enough = counts >= MIN_NEIGHBOURS
+        normals[part] = np.where(enough[:, None], normal, 0)
+        variation[part] = np.where(enough, values[:, 0] / np.maximum(values.sum(axis=1), 1e-12), 0)
+    return normals, variation
 
 
 def _neighbourhoods(

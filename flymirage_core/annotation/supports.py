@@ -1,5 +1,6 @@
 """Broad level faces (table tops, seats, shelves) and what stands on them, whatever its colour."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -49,13 +50,14 @@ COVERED: Final = 0.5
 
 @dataclass(frozen=True)
 class Face:
-    """A level face: its height's upper edge and the rectangle round it. World frame, metres."""
+    """A level face: its height, the upper edge of it, and the rectangle round it. World frame, metres."""
 
     height: float
+    level: float  # where most of it is
     plan: Footprint
 
 
-def standing_things(points: Float32, normals: Float32, edges: Index, floor: float, yaw: float) -> Index:
+def standing_things(points: Float32, edges: Index, faces: Sequence[Face]) -> Index:
     """(N,) number of the thing on a support that each point belongs to; 0 for what stands on the floor.
 
     Things are connected where their points are (``edges`` (E, 2)) once the support is cut away, so two that touch have
@@ -63,7 +65,7 @@ def standing_things(points: Float32, normals: Float32, edges: Index, floor: floa
     """
     things = np.zeros(len(points), np.intp)
     number = 0
-    for face in _tops(level_faces(points, normals, edges, floor, yaw)):
+    for face in _tops(faces):
         for members in _on_face(face, points, edges):
             number += 1
             things[members] = number
@@ -85,11 +87,11 @@ def level_faces(points: Float32, normals: Float32, edges: Index, floor: float, y
         cells = np.unique(np.floor(points[flat, :2] / CELL), axis=0)
         if len(cells) * CELL**2 >= MIN_FACE_AREA:
             top = float(np.percentile(points[flat, 2], 80))
-            faces.append(Face(top, fit_footprint(points[flat], yaw, FACE_TRIM)))
+            faces.append(Face(top, float(main), fit_footprint(points[flat], yaw, FACE_TRIM)))
     return sorted(faces, key=lambda f: (f.height, tuple(f.plan.centre)))
 
 
-def _tops(faces: list[Face]) -> list[Face]:
+def _tops(faces: Sequence[Face]) -> list[Face]:
     """The faces without those that have another over most of them: the boards of a bookcase, but for the uppermost."""
 
     def compartment(face: Face) -> bool:

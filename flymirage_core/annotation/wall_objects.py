@@ -22,7 +22,9 @@ MAX_PAINT_STEP: Final = 3.0
 """Colour step between neighbouring cells up to which both are bare wall."""
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
-FRONT_PERCENTILE: Final = 75
+FRONT_PERCENTILE: Final = 60
+EDGE_LOSS: Final = 0.015
+"""Metres by which a thing ends beyond its cells: those on its edge have the colour of both."""
 MIN_AREA: Final = 0.06
 """Square metres."""
 MIN_SIDE: Final = 0.15
@@ -70,7 +72,8 @@ def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Fl
         xy = wall.normal * (wall.back + thickness / 2) + wall.direction * (origin[0] + (x + w / 2) * CELL)
         yaw = float(np.arctan2(wall.direction[1], wall.direction[0]))
         centre = (float(xy[0]), float(xy[1]), bottom + h * CELL / 2)
-        boxes.append(FittedBox(centre, (w * CELL, thickness, h * CELL), yaw, members[mine], on_wall=True))
+        size = (w * CELL + 2 * EDGE_LOSS, thickness, h * CELL + 2 * EDGE_LOSS)
+        boxes.append(FittedBox(centre, size, yaw, members[mine], on_wall=True))
     return boxes
 
 
