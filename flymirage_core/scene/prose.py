@@ -1,115 +1,131 @@
-"""A description's facts as a few sentences for people, and as a prompt for image and world models."""
+"""A design's facts as a paragraph for people: short sentences, each from a grammar with many frames."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
-from flymirage_core.scene.description import SceneDescription
-from flymirage_core.scene.design import PlannedObject
+from flymirage_core.scene.design import Light, PlannedObject, SceneDesign, Zone
+from flymirage_core.scene.furnish import pick
+from flymirage_core.scene.grammar import sentence
+from flymirage_core.scene.inflection import attributes, count, phrase, plural, things
+from flymirage_core.scene.prompts import by_noun
 
-NUMBERS = ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
-IRREGULAR = {"bookshelf": "bookshelves", "low bookshelf": "low bookshelves", "wall shelf": "wall shelves"}
-PLURALS = {
-    "stack of books": "stacks of books",
-    "pallet of sacks": "pallets of sacks",
-    "chest of drawers": "chests of drawers",
-    **IRREGULAR,
-}
-OPENINGS = (
-    "{a_style} {place}, about {x} by {y} metres under a ceiling of {z:.1f} metres.",
-    "This {place} is {style} in character and measures roughly {x} by {y} metres, {z:.1f} metres high.",
-    "Some {x} metres long and {y} wide, the {place} is {style}; its ceiling is {z:.1f} metres up.",
-    "The {place} is {style} in style, {x} metres by {y}, with {z:.1f} metres of headroom.",
-)
-FLOORS = (
-    "Between {wall} {walls} lies {a_floor}, and the place has {light}.",
-    "Underfoot is {a_floor}; the {walls} are {wall}, and there is {light}.",
-    "It has {wall} {walls}, {a_floor} and {light}.",
-)
-PLACES = {
-    "against_wall": ("Along the walls stand {things}.", "The walls are lined with {things}."),
-    "on_floor": ("On the floor there are {things}.", "The open floor holds {things}."),
-    "in_row": ("Set in rows are {things}.", "There are rows of {things}."),
-    "around": ("Drawn up to the furniture are {things}.", "Seats are ready: {things}."),
-    "on_surface": ("On the furniture one finds {things}.", "Smaller things stand about: {things}."),
-    "on_wall": ("On the walls hang {things}.", "The walls carry {things}."),
-    "hanging": ("From the ceiling come {things}.", "Overhead there are {things}."),
-}
+SENTENCES = (7, 11)
+"""Of a paragraph, those about things."""
+MOST_THINGS = 3
+"""Kinds of things in one sentence."""
+PLURAL_MATERIALS = ("plank", "tile", "panel")
+LIGHT_PLURALS = ("patches", "pools", "bands", "rows", "lamps", "shadows")
+WALLS_OF = {"street": "facades", "courtyard": "facades", "yard": "walls", "rooftop": "parapets"}
+NOTE_SHARE = 0.8
+
+Groups = list[PlannedObject]
 
 
-def plural(noun: str) -> str:
-    """
-    >>> plural("wall shelf"), plural("stack of books"), plural("bench"), plural("vase")
-    ('wall shelves', 'stacks of books', 'benches', 'vases')
-    """
-    if noun in PLURALS:
-        return PLURALS[noun]
-    if noun.endswith(("s", "x", "ch", "sh")):
-        return noun + "es"
-    if noun.endswith("y") and noun[-2] not in "aeiou":
-        return noun[:-1] + "ies"
-    return noun + "s"
+def prose_of(design: SceneDesign, place: str, notes: Sequence[str], generator: np.random.Generator) -> str:
+    """The place, its surfaces and light, something said of such places, then what is where."""
+    about = [_opening(design, place, generator)]
+    facts = [_surfaces(design, generator), _light(design, generator)]
+    if notes and generator.uniform() < NOTE_SHARE:
+        facts.append(str(pick(generator, notes)))
+    about += [facts[int(i)] for i in generator.permutation(len(facts))]
+    return " ".join(about + _objects(design, generator))
 
 
-def article(phrase: str) -> str:
-    """ "a" or "an", by the first letter.
-
-    >>> article("oak desk"), article("pine desk")
-    ('an', 'a')
-    """
-    return "an" if phrase[:1].lower() in "aeiou" else "a"
+def _opening(design: SceneDesign, place: str, generator: np.random.Generator) -> str:
+    x, y, _ = design.zones[0].dimensions
+    slots = {"style": design.style, "place": place, "era": design.era, "x": count(x), "y": count(y)}
+    return sentence("opening", slots, False, generator)
 
 
-def phrase_for(planned: PlannedObject) -> str:
-    """
-    >>> phrase_for(PlannedObject(noun="vase", count=2, colour="teal", material="stoneware", placement="on_surface"))
-    'two teal stoneware vases'
-    """
-    said = planned.material in (planned.colour, planned.noun.split()[0]) or " of " in planned.noun
-    words = planned.colour if said else f"{planned.colour} {planned.material}"
-    if planned.count == 1:
-        return f"{article(words)} {words} {planned.noun}"
-    return f"{count(planned.count)} {words} {plural(planned.noun)}"
+def _surfaces(design: SceneDesign, generator: np.random.Generator) -> str:
+    slots = {str(s.part): _stuff(s.colour, s.material) for s in design.zones[0].surfaces}
+    slots["z"] = count(design.zones[0].dimensions[2])
+    return sentence(f"surfaces_{design.setting}", slots, False, generator)
 
 
-def count(number: float) -> str:
-    """The nearest whole number, in words up to twelve.
-
-    >>> count(10.6), count(40)
-    ('eleven', '40')
-    """
-    whole = round(number)
-    return NUMBERS[whole] if whole < len(NUMBERS) else str(whole)
+def _stuff(colour: str, material: str) -> str:
+    words = attributes(colour, material)
+    return words + "s" if words.endswith(PLURAL_MATERIALS) else words
 
 
-def listing(things: list[str]) -> str:
-    """
-    >>> listing(["a lamp", "two vases", "a bowl"])
-    'a lamp, two vases and a bowl'
-    """
-    return things[0] if len(things) == 1 else ", ".join(things[:-1]) + " and " + things[-1]
+def _light(design: SceneDesign, generator: np.random.Generator) -> str:
+    words = design.light.words
+    many = any(word in words.split(" ", 4)[:3] for word in LIGHT_PLURALS)
+    return sentence(
+        "light", {"light": words, "time": design.light.time_of_day, "when": when(design.light)}, many, generator
+    )
 
 
-def prose_of(description: SceneDescription, generator: np.random.Generator) -> str:
-    """What a person would read: the place, its surfaces and light, then what is where."""
+def when(light: Light) -> str:
+    """ "in the morning", "at dusk" """
+    return f"{'in the' if light.time_of_day in ('morning', 'afternoon') else 'at'} {light.time_of_day}"
 
-    def one(frames: tuple[str, ...]) -> str:
-        return frames[int(generator.integers(len(frames)))]
 
-    x, y, z = description.dimensions
-    floor, walls = (f"{s.material} {s.part}" for s in description.zones[0].surfaces[:2])
-    style, place, ground = description.style, description.subcategory, f"{description.palette[1]} {floor}"
-    sentences = [
-        one(OPENINGS).format(
-            a_style=f"{article(style).capitalize()} {style}", style=style, place=place, x=count(x), y=count(y), z=z
-        ),
-        one(FLOORS).format(
-            wall=description.palette[0],
-            walls=walls,
-            a_floor=f"{article(ground)} {ground}",
-            light=description.light.words,
-        ),
-    ]
-    for placement, frames in PLACES.items():
-        things = [phrase_for(o) for o in description.objects if o.placement == placement]
-        if things:
-            sentences.append(one(frames).format(things=listing(things)))
-    return " ".join(sentences)
+def _objects(design: SceneDesign, generator: np.random.Generator) -> list[str]:
+    """Sentences about a seeded choice of things: what stands, what is on and round it, then walls and air."""
+    main, *others = design.zones
+    sentences: list[str] = []
+    clusters = _clusters([o for o in design.objects if o.zone in ("", main.name)], generator)
+    for key in _order(list(clusters), generator):
+        sentences.append(_about(key, clusters[key], main, design, generator))
+    for zone in others:
+        groups = by_noun(o for o in design.objects if o.zone == zone.name and not o.relative_to)[:MOST_THINGS]
+        if groups:
+            said, many = things(phrase(g) for g in groups)
+            sentences.append(sentence("side", {"side": f"the {zone.name}", "things": said}, many, generator))
+    return sentences
+
+
+Key = tuple[str, str, int]
+
+
+def _clusters(objects: Sequence[PlannedObject], generator: np.random.Generator) -> dict[Key, list[Groups]]:
+    """(rule, anchor, number) -> the kinds of things that one sentence speaks of."""
+    by_rule: dict[tuple[str, str], list[Groups]] = {}
+    for groups in by_noun(objects):
+        rule, anchor = groups[0].placement, groups[0].relative_to
+        if rule == "on_surface" and not anchor:
+            by_rule.setdefault(("on_any", ""), []).append(groups)
+        else:
+            by_rule.setdefault(
+                (rule, anchor if rule in ("around", "facing", "beside", "on_surface") else ""), []
+            ).append(groups)
+    clusters: dict[Key, list[Groups]] = {}
+    for (rule, anchor), found in by_rule.items():
+        shuffled = [found[int(i)] for i in generator.permutation(len(found))]
+        number = 0
+        while shuffled:
+            size = int(generator.integers(1, MOST_THINGS + 1))
+            clusters[rule, anchor, number] = shuffled[:size]
+            shuffled, number = shuffled[size:], number + 1
+    return clusters
+
+
+FIRST = ("against_wall", "on_floor", "in_row")
+LAST = ("on_wall", "hanging", "on_any")
+
+
+def _order(keys: list[Key], generator: np.random.Generator) -> list[Key]:
+    """The first of every rule before the second of any; big things, then what relates to them, then what is above."""
+    rank = dict.fromkeys(FIRST, 0) | dict.fromkeys(LAST, 2)
+    turn: dict[str, int] = {}
+    turns = []
+    for key in (keys[int(i)] for i in generator.permutation(len(keys))):
+        turns.append((turn.setdefault(key[0], 0), key))
+        turn[key[0]] += 1
+    chosen = [key for _, key in sorted(turns, key=lambda t: t[0])][: int(generator.integers(*SENTENCES))]
+    return sorted(chosen, key=lambda key: rank.get(key[0], 1))
+
+
+def _about(key: Key, clusters: list[Groups], zone: Zone, design: SceneDesign, generator: np.random.Generator) -> str:
+    rule, anchor, _ = key
+    said, many = things(phrase(g) for g in clusters)
+    number = sum(o.count for o in design.objects if o.noun == anchor)
+    slots = {
+        "things": said,
+        "anchor": plural(anchor) if number > 1 else anchor,
+        "walls_word": WALLS_OF.get(zone.kind, "walls"),
+        "ground_word": "ground" if design.setting == "outdoor" else "floor",
+    }
+    return sentence(rule, slots, many, generator)

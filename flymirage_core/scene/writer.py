@@ -1,26 +1,30 @@
 """Who writes scene descriptions: the port that an LLM fills, and its offline twin, which composes them from data."""
 
-import json
-from collections.abc import Mapping
-from functools import cache
-from importlib import resources
-from typing import Any, NamedTuple, Protocol
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 import numpy as np
 
 from flymirage_core.scene.description import Provenance, SceneDescription
-from flymirage_core.scene.design import Light, PlannedObject, Surface, Zone
+from flymirage_core.scene.design import Light, PlannedObject, SceneDesign, Size, Surface, Zone
+from flymirage_core.scene.furnish import fill_zone, in_finishes, pick
+from flymirage_core.scene.inflection import capitalised
 from flymirage_core.scene.keys import check_scene_key, rng
-from flymirage_core.scene.prose import prose_of
-from flymirage_core.scene.taxonomy import Taxonomy, standard_taxonomy
+from flymirage_core.scene.knowledge import Look, Place, Range, lights, looks, places
+from flymirage_core.scene.prompts import image_prompt, world_prompt
+from flymirage_core.scene.prose import prose_of, when
+from flymirage_core.scene.taxonomy import STANDARD, Taxonomy, standard_taxonomy
 
-NAME = "offline 1"
-OBJECTS_WANTED = (88, 98)
-"""How many objects a description asks for; the paper's scenes have 60 to 100, and not all can be found again."""
-SIZE_RANGE = ((9.6, 12.0), (8.4, 10.0), (2.9, 3.5))
-"""Metres: length, width and height of rooms."""
-WALL_SHARE = 0.2
-"""Of all objects, how many hang on walls before fillers go elsewhere."""
+NAME = "offline 2"
+OBJECTS_WANTED = (68, 97)
+"""How many objects a description asks for; the paper's scenes have 60 to 100."""
+SIDE_OBJECTS = 14
+"""Of them, in a side space."""
+ACCENTS = (
+    "navy", "teal", "mustard", "rust", "forest green", "burgundy", "sage", "terracotta", "charcoal", "powder blue",
+    "plum", "ochre", "olive", "denim blue", "coral", "white", "black", "sky blue", "orange", "honey brown", "brass",
+)  # fmt: skip
+TITLES = ("{style} {place}", "{place}, {era}", "{style} {place}, {era}", "{place} {when}", "{style} {place}, {time}")
 
 
 class SceneWriter(Protocol):
@@ -35,7 +39,7 @@ class SceneWriter(Protocol):
 
 
 class OfflineSceneWriter:
-    """Composes descriptions from the taxonomy and the furnishing data: same key and counts, same description."""
+    """Composes descriptions from the taxonomy and what is known of places: same key and counts, same description."""
 
     name = NAME
 
@@ -50,140 +54,122 @@ class OfflineSceneWriter:
         check_scene_key(scene_key)
         category, subcategory = place or self.taxonomy.pick(scene_key, self.counts_so_far)
         generator = rng(scene_key, "description")
-        data = _furnishing()
-        look = data["categories"].get(category) or _any(generator, list(data["categories"].values()))
-        kits = data["subcategories"].get(subcategory) or _any(generator, list(data["subcategories"].values()))
-        wall, floor = _any(generator, look["wall_colours"]), _any(generator, look["floor_colours"])
-        floors, walls = _any(generator, look["floors"]), _any(generator, look["walls"])
-        style = _any(generator, look["styles"])
-        objects = _objects(data, kits, look["fillers"], generator)
-        accents = [o.colour for o in objects if o.placement in ("against_wall", "on_floor")][:3]
-        x, y, z = (round(float(generator.uniform(a, b)), 1) for a, b in SIZE_RANGE)
-        surfaces = (
-            Surface(part="floor", colour=floor, material=floors.removesuffix(" floor")),
-            Surface(part="walls", colour=wall, material=walls.removesuffix(" walls")),
-            Surface(part="ceiling", colour="white", material="plaster"),
-        )
-        description = SceneDescription(
+        known = _known_place(category, subcategory, self.taxonomy, generator)
+        return SceneDescription(
+            **dict(_design(subcategory, known, generator)),
             scene=scene_key,
-            title=f"{style.capitalize()} {subcategory}",
             category=category,
             subcategory=subcategory,
-            setting="indoor",
-            dimensions=(x, y, z),
-            zones=(
-                Zone(name=subcategory, kind="room", dimensions=(x, y, z), surfaces=surfaces, connects_to=(), windows=3),
-            ),
-            style=style,
-            era="",
-            palette=(wall, floor, *dict.fromkeys(accents)),
-            light=Light(
-                time_of_day="afternoon",
-                sky="clear",
-                sources=("windows", "hanging_lamps"),
-                words=_any(generator, data["lights"]),
-            ),
-            objects=objects,
-            prose="",
-            image_prompt="",
-            world_prompt="",
             provenance=Provenance(kind="generated", writer=NAME),
         )
-        prose = prose_of(description, generator)
-        return description.model_copy(update={"prose": prose, "image_prompt": prose, "world_prompt": prose})
 
 
-class Want(NamedTuple):
-    """A kind of thing at a kind of place."""
+def _known_place(category: str, subcategory: str, taxonomy: Taxonomy, generator: np.random.Generator) -> Place:
+    """What is known of a subcategory; of one of the user's own, what it is like, else one of its category, else any.
 
-    noun: str
-    placement: str
-    relative_to: str = ""
-
-
-def _anchored(counts: dict[Want, int]) -> dict[Want, int]:
-    """Without seats for what is not in the room; small things whose table is missing stand anywhere."""
-    present = {want.noun for want, n in counts.items() if n}
-    result: dict[Want, int] = {}
-    for want, n in counts.items():
-        if want.relative_to and want.relative_to not in present:
-            if want.placement == "around":
-                continue
-            want = want._replace(relative_to="")
-        if n:
-            result[want] = result.get(want, 0) + n
-    return result
+    What is said of the stand-in (its notes) is not said of the user's.
+    """
+    found = places().get(subcategory)
+    if found:
+        return found
+    standard = [c for name in STANDARD for c in standard_taxonomy(name).categories if c.name == category]
+    candidates = [s for c in standard for s in c.subcategories] or list(places())
+    like = taxonomy.like.get(subcategory, "")
+    stand_in = like if like in places() else str(pick(generator, candidates))
+    return places()[stand_in].model_copy(update={"notes": ()})
 
 
-def _fill_up(
-    counts: dict[Want, int],
-    wanted: int,
-    fillers: dict[str, list[str]],
-    holds: dict[str, int],
-    generator: np.random.Generator,
-) -> None:
-    """Add furniture for the small things to stand on where it lacks, then things of the category up to ``wanted``."""
+def _design(subcategory: str, known: Place, generator: np.random.Generator) -> SceneDesign:
+    look = looks()[known.look]
+    style, era = str(pick(generator, look.styles)), str(pick(generator, look.eras))
+    light = _light(known, generator)
+    zones = _zones(subcategory, known, look, light, generator)
+    surfaces = [s.colour for s in zones[0].surfaces]
+    accents = [str(c) for c in generator.permutation(list(ACCENTS))[: int(generator.integers(3, 5))]]
+    palette = tuple(dict.fromkeys([surfaces[1], surfaces[0], *accents]))
+    objects = _objects(known, zones, palette, generator)
+    title = str(pick(generator, TITLES)).format(
+        style=style, place=subcategory, era=era, time=light.time_of_day, when=when(light)
+    )
+    design = SceneDesign(
+        title=capitalised(title),
+        setting="outdoor" if known.outdoor else "indoor",
+        dimensions=_overall(zones),
+        zones=zones,
+        style=style,
+        era=era,
+        palette=palette,
+        light=light,
+        objects=objects,
+        prose="",
+        image_prompt="",
+        world_prompt="",
+    )
+    texts = {
+        "prose": prose_of(design, subcategory, known.notes, generator),
+        "image_prompt": image_prompt(design, subcategory),
+        "world_prompt": world_prompt(design, subcategory),
+    }
+    return design.model_copy(update=texts)
 
-    def total(placement: str) -> int:
-        return sum(n for want, n in counts.items() if want.placement == placement)
 
-    def room_on_top() -> int:
-        return sum(holds.get(want.noun, 0) * n for want, n in counts.items()) - total("on_surface")
+def _light(known: Place, generator: np.random.Generator) -> Light:
+    profile = lights()[str(pick(generator, known.light))]
+    time, sky = pick(generator, profile.times), str(pick(generator, profile.skies))
+    words = str(pick(generator, profile.words)).format(time=time, sky="grey" if sky == "overcast" else "clear")
+    return Light(time_of_day=time, sky=sky, sources=profile.sources, words=words.removeprefix("+"))  # type: ignore[arg-type]
 
-    turn = 0
-    while room_on_top() < 0 or sum(counts.values()) < wanted:
-        if room_on_top() < 0:
-            placement = "against_wall"
-        elif total("on_wall") < WALL_SHARE * wanted:
-            placement = "on_wall"
-        elif room_on_top() > 0 and turn % 3:
-            placement = "on_surface"
-        else:
-            placement = "on_floor" if turn % 4 else "against_wall"
-        want = Want(_any(generator, fillers[placement]), placement)
-        counts[want] = counts.get(want, 0) + 1
-        turn += 1
+
+def _zones(name: str, known: Place, look: Look, light: Light, generator: np.random.Generator) -> tuple[Zone, ...]:
+    surfaces = tuple(
+        Surface(part=part, colour=str(pick(generator, choices[material])), material=material)
+        for part, choices in look.surfaces.items()
+        for material in [str(pick(generator, list(choices)))]
+    )
+    windows = _windows(known, light, generator)
+    side = known.side
+    main = Zone(
+        name=name,
+        kind=known.kind,
+        dimensions=_size(known.range, generator),
+        surfaces=surfaces,
+        connects_to=(side.name,) if side else (),
+        windows=windows,
+    )
+    if side is None:
+        return (main,)
+    small = _size(side.range, generator)
+    return main, main.model_copy(
+        update={"name": side.name, "kind": side.kind, "dimensions": small, "connects_to": (name,), "windows": 0}
+    )
+
+
+def _windows(known: Place, light: Light, generator: np.random.Generator) -> int:
+    """Facades of streets and courtyards have many; rooms have some if their light comes through them."""
+    least, most = {"street": (10, 24), "courtyard": (10, 20), "yard": (3, 8), "rooftop": (0, 3)}.get(known.kind, (2, 6))
+    wanted = int(generator.integers(least, most + 1))
+    return wanted if known.outdoor or "windows" in light.sources else 0
+
+
+def _size(ranges: Sequence[Range], generator: np.random.Generator) -> Size:
+    x, y, z = (round(float(generator.uniform(a, b)), 1) for a, b in ranges)
+    return x, y, z
+
+
+def _overall(zones: tuple[Zone, ...]) -> Size:
+    """Of zones side by side along x."""
+    x = round(sum(z.dimensions[0] for z in zones), 1)
+    return x, max(z.dimensions[1] for z in zones), max(z.dimensions[2] for z in zones)
 
 
 def _objects(
-    data: dict[str, Any], kits: list[str], fillers: dict[str, list[str]], generator: np.random.Generator
+    known: Place, zones: tuple[Zone, ...], palette: tuple[str, ...], generator: np.random.Generator
 ) -> tuple[PlannedObject, ...]:
-    """What stands in the room: the sets' things, in two finishes where there are many, filled up to what is wanted."""
-    counts: dict[Want, int] = {}
-    for kit in kits:
-        for row in data["sets"][kit]:
-            want = Want(row["noun"], row["placement"], row["relative_to"])
-            counts[want] = counts.get(want, 0) + int(generator.integers(row["least"], row["most"] + 1))
-    counts = _anchored(counts)
-    _fill_up(counts, int(generator.integers(*OBJECTS_WANTED)), fillers, data["holds"], generator)
-    planned = []
-    for (noun, placement, relative_to), count in counts.items():
-        finish = data["finishes"][data["nouns"][noun]]
-        colours = generator.permutation(finish["colours"])
-        groups = 1 if placement in ("around", "in_row") or count < 2 else min(count, len(colours), 3)
-        for i in range(groups):
-            share = count // groups + (i < count % groups)
-            if share:
-                material = _any(generator, finish["materials"])
-                planned.append(
-                    PlannedObject(
-                        noun=noun,
-                        count=share,
-                        colour=str(colours[i]),
-                        material=material,
-                        placement=placement,  # type: ignore[arg-type]
-                        relative_to=relative_to,
-                    )
-                )
-    return tuple(planned)
-
-
-def _any(generator: np.random.Generator, choices: list[Any]) -> Any:
-    return choices[int(generator.integers(len(choices)))]
-
-
-@cache
-def _furnishing() -> dict[str, Any]:
-    """Sets of furniture for each subcategory, and the finishes of each noun."""
-    data: dict[str, Any] = json.loads(resources.files("flymirage_core.scene").joinpath("furnishing.json").read_text())
-    return data
+    wanted = int(generator.integers(*OBJECTS_WANTED))
+    objects: list[PlannedObject] = []
+    if known.side:
+        counts = fill_zone(zones[1], known.side.kits, (), known.fillers, SIDE_OBJECTS, generator)
+        objects = in_finishes(counts, zones[1].name, palette, generator)
+        wanted -= sum(o.count for o in objects)
+    counts = fill_zone(zones[0], known.kits, known.options, known.fillers, wanted, generator)
+    return (*in_finishes(counts, zones[0].name, palette, generator), *objects)

@@ -356,6 +356,8 @@ PLACERS = {
     "against_wall": _place_against_wall,
     "in_row": _place_in_row,
     "on_floor": _place_on_floor,
+    "facing": _place_on_floor,
+    "beside": _place_on_floor,
     "around": _place_around,
     "on_surface": _place_on_surface,
     "on_wall": _place_on_wall,

@@ -102,8 +102,8 @@ def shell(room: Room, description: SceneDescription) -> list[Part]:
     x, y, z = room.dimensions
     surfaces = {s.part: s for s in description.zones[0].surfaces}
     seed = int(seeded(description.scene, "shell").integers(1 << 16))
-    floor = _finish(FLOORS, surfaces["floor"], seed)
-    wall = _finish(WALLS, surfaces["walls"], seed + 1)
+    floor = _finish(FLOORS, surfaces.get("floor") or surfaces["ground"], seed)
+    wall = _finish(WALLS, surfaces.get("walls") or surfaces["facades"], seed + 1)
     parts = [
         Part(Sheet((-x / 2, -y / 2, 0.0), (x, 0.0, 0.0), (0.0, y, 0.0)), floor),
         Part(Sheet((-x / 2, y / 2, z), (x, 0.0, 0.0), (0.0, -y, 0.0)), paint("white", "plaster", detail=2.6)),

@@ -8,15 +8,32 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from flymirage_core.errors import InputError
-from flymirage_core.scene.taxonomy import load_taxonomy, standard_taxonomy
+from flymirage_core.scene.knowledge import kits, places
+from flymirage_core.scene.taxonomy import STANDARD, load_taxonomy, standard_taxonomy, taxonomy_named
 
 KEYS = st.from_regex(r"[a-z0-9][a-z0-9_-]{0,20}", fullmatch=True)
 
 
-def test_the_taxonomy_has_the_papers_six_categories_with_twelve_subcategories_each():
-    taxonomy = standard_taxonomy()
+@pytest.mark.parametrize("name", STANDARD)
+def test_each_standard_taxonomy_has_six_categories_with_twelve_subcategories_or_more(name):
+    taxonomy = standard_taxonomy(name)
     assert len(taxonomy.categories) == 6
     assert all(len(set(c.subcategories)) >= 12 for c in taxonomy.categories)
+
+
+@pytest.mark.parametrize("name", STANDARD)
+def test_every_subcategory_has_knowledge_of_its_own(name):
+    for category in standard_taxonomy(name).categories:
+        for subcategory in category.subcategories:
+            place = places()[subcategory]
+            assert set(place.kits) | set(place.options) <= set(kits())
+            assert place.notes
+
+
+def test_every_category_has_places_under_a_roof_and_most_have_some_under_the_sky():
+    for name in STANDARD:
+        outdoors = [sum(places()[s].outdoor for s in c.subcategories) for c in standard_taxonomy(name).categories]
+        assert min(outdoors) >= 1
 
 
 @given(KEYS)
@@ -27,15 +44,26 @@ def test_a_pick_depends_on_the_key_alone_and_lies_in_the_taxonomy(key):
     assert subcategory in next(c for c in taxonomy.categories if c.name == category).subcategories
 
 
-def test_growing_scene_by_scene_keeps_categories_and_subcategories_even():
-    taxonomy, counts = standard_taxonomy(), Counter()
-    for i in range(144):
+@pytest.mark.parametrize("name", STANDARD)
+def test_six_hundred_draws_that_each_know_the_earlier_ones_spread_within_ten_percent(name):
+    taxonomy, counts = standard_taxonomy(name), Counter()
+    for i in range(600):
         counts[taxonomy.pick(f"scene-{i:04d}", counts)] += 1
-    per_category = Counter()
+    for category in taxonomy.categories:
+        own = [counts[category.name, s] for s in category.subcategories]
+        assert 90 <= sum(own) <= 110
+        assert max(own) - min(own) <= 1
+
+
+def test_a_night_evens_out_what_earlier_nights_left_uneven():
+    taxonomy = standard_taxonomy()
+    counts = Counter({(c.name, c.subcategories[0]): 10 * i for i, c in enumerate(taxonomy.categories)})
+    for i in range(150):
+        counts[taxonomy.pick(f"night-{i:04d}", counts)] += 1
+    totals = Counter()
     for (category, _), n in counts.items():
-        per_category[category] += n
-    assert set(per_category.values()) == {24}
-    assert set(counts.values()) == {2}
+        totals[category] += n
+    assert set(totals.values()) == {50}
 
 
 def test_picks_without_history_reach_every_category():
@@ -57,7 +85,22 @@ def test_a_broken_taxonomy_file_gets_one_sentence_that_names_it(tmp_path: Path, 
         load_taxonomy(path)
 
 
-def test_a_users_own_taxonomy_is_read(tmp_path: Path):
+def test_a_users_own_taxonomy_replaces_the_standard_one(tmp_path: Path):
     path = tmp_path / "mine.json"
     path.write_text('{"version": "lab 1", "categories": [{"name": "caves", "subcategories": ["grotto"]}]}')
-    assert load_taxonomy(path).pick("scene-1") == ("caves", "grotto")
+    assert taxonomy_named(str(path)).pick("scene-1") == ("caves", "grotto")
+
+
+def test_a_users_own_taxonomy_may_extend_a_standard_one(tmp_path: Path):
+    path = tmp_path / "mine.json"
+    path.write_text(
+        '{"version": "lab 1", "extends": "site", "categories": ['
+        '{"name": "Residential", "subcategories": ["igloo"]},'
+        '{"name": "caves", "subcategories": [{"name": "old mine", "like": "mine gallery"}]}]}'
+    )
+    mine, site = taxonomy_named(str(path)), standard_taxonomy("site")
+    assert len(mine.categories) == 7
+    residential = {c.name: c.subcategories for c in mine.categories}["Residential"]
+    assert residential == (*{c.name: c.subcategories for c in site.categories}["Residential"], "igloo")
+    assert mine.like == {"old mine": "mine gallery"}
+    assert mine.version == "site 2 + lab 1"

@@ -1,0 +1,165 @@
+"""What the offline writer knows of places and things, as data: nouns, kits, looks, lights and subcategories.
+
+The files beside this one say in their "about" what their fields mean; here they are read and checked.
+"""
+
+import json
+from functools import cache
+from importlib import resources
+from typing import Any, NamedTuple, get_args
+
+from pydantic import BaseModel, ConfigDict
+
+from flymirage_core.scene.design import OUTDOOR_KINDS, LightSource, Placement, SurfacePart, TimeOfDay, ZoneKind
+
+Range = tuple[float, float]
+
+
+class Datum(BaseModel):
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Noun(Datum):
+    """A kind of thing: where it may go, its typical size (x, y, z) in metres, what it is made of."""
+
+    placements: tuple[Placement, ...]
+    size: tuple[float, float, float]
+    finish: str
+    holds: int = 0
+    plural: str = ""
+    states: tuple[str, ...] = ()
+
+    @property
+    def unsaid(self) -> bool:
+        """Whether nobody names its material: a red car, a green tree."""
+        return self.finish in _unsaid()
+
+    @property
+    def finishes(self) -> dict[str, list[str]]:
+        """Material -> its colours."""
+        return finishes()[self.finish]
+
+
+class Want(NamedTuple):
+    """A kind of thing at a kind of spot."""
+
+    noun: str
+    placement: Placement
+    relative_to: str = ""
+
+
+class Row(NamedTuple):
+    """One line of a kit."""
+
+    least: int
+    most: int
+    want: Want
+
+
+class Side(Datum):
+    """A small space beside the main one."""
+
+    name: str
+    kind: ZoneKind
+    range: tuple[Range, Range, Range]
+    kits: tuple[str, ...]
+
+
+class Place(Datum):
+    """What a subcategory is like."""
+
+    kind: ZoneKind
+    range: tuple[Range, Range, Range]
+    look: str
+    light: tuple[str, ...]
+    fillers: str
+    kits: tuple[str, ...]
+    options: tuple[str, ...]
+    notes: tuple[str, ...]
+    side: Side | None = None
+
+    @property
+    def outdoor(self) -> bool:
+        return self.kind in OUTDOOR_KINDS
+
+
+class Look(Datum):
+    """Styles and eras that go together, and what surfaces are made of: part -> material -> colours."""
+
+    styles: tuple[str, ...]
+    eras: tuple[str, ...]
+    surfaces: dict[SurfacePart, dict[str, tuple[str, ...]]]
+
+
+class LightProfile(Datum):
+    """A way of lighting a place. ``words`` that begin with "+" are plural."""
+
+    times: tuple[TimeOfDay, ...]
+    skies: tuple[str, ...]
+    sources: tuple[LightSource, ...]
+    words: tuple[str, ...]
+
+
+def _file(name: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads(resources.files("flymirage_core.scene").joinpath(name).read_text())
+    return data
+
+
+@cache
+def finishes() -> dict[str, dict[str, list[str]]]:
+    """Finish -> material -> colours."""
+    found: dict[str, dict[str, list[str]]] = _file("nouns.json")["finishes"]
+    return found
+
+
+@cache
+def _unsaid() -> frozenset[str]:
+    return frozenset(_file("nouns.json")["unsaid"])
+
+
+@cache
+def nouns() -> dict[str, Noun]:
+    """All nouns that the writer may use: those that the embedded world can build."""
+    data = _file("nouns.json")
+    return {name: Noun(**fields) for name, fields in data["nouns"].items() if name not in data["awaited"]}
+
+
+@cache
+def kits() -> dict[str, tuple[Row, ...]]:
+    """Kit -> its rows; rows of nouns that cannot be built are left out."""
+    every = set(_file("nouns.json")["nouns"])
+    rows = {name: [_row(text, every) for text in texts] for name, texts in _file("kits.json")["kits"].items()}
+    return {name: tuple(r for r in found if r.want.noun in nouns()) for name, found in rows.items()}
+
+
+def _row(text: str, known: set[str]) -> Row:
+    """ "2-3 armchair facing coffee table" """
+    span, *words = text.split()
+    least, most = (int(n) for n in span.split("-"))
+    for i in range(1, len(words)):
+        noun, placement, anchor = " ".join(words[:i]), words[i], " ".join(words[i + 1 :])
+        if noun in known and placement in get_args(Placement) and (not anchor or anchor in known):
+            return Row(least, most, Want(noun, placement, anchor))  # type: ignore[arg-type]
+    raise ValueError(f"kit row {text!r}: expected least-most, a known noun, a placement and perhaps another noun")
+
+
+@cache
+def places() -> dict[str, Place]:
+    """Subcategory -> what it is like."""
+    return {name: Place(**fields) for name, fields in _file("places.json")["places"].items()}
+
+
+@cache
+def looks() -> dict[str, Look]:
+    return {name: Look(**fields) for name, fields in _file("places.json")["looks"].items()}
+
+
+@cache
+def lights() -> dict[str, LightProfile]:
+    return {name: LightProfile(**fields) for name, fields in _file("places.json")["lights"].items()}
+
+
+@cache
+def fillers() -> dict[str, tuple[str, ...]]:
+    """Name -> nouns that may be added until a place is full."""
+    return {name: tuple(n for n in found if n in nouns()) for name, found in _file("places.json")["fillers"].items()}
