@@ -1,19 +1,13 @@
 """What Dagster is told when a stage fails: one sentence, and whether trying again may help."""
 
-import errno
 from typing import Any
 
 import dagster as dg
 
-from flymirage_core.errors import FlyMirageError, NightStopError, TransientServiceError
+from flymirage_core.errors import NO_RETRY, FlyMirageError, NightStopError, TransientServiceError
 
 STOPS_GROWTH = "stops_growth"
 """Metadata of failures that every other scene would meet too."""
-NO_RETRY = {
-    errno.ENOSPC: "the disk is full",
-    errno.EROFS: "the disk is read-only",
-    errno.EACCES: "it may not be written",
-}
 
 
 class one_clear_sentence:  # noqa: N801 - reads as what it does at the place of use

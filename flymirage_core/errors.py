@@ -1,5 +1,14 @@
 """The project's own errors: each is one clear sentence - what was found, where, what was expected, what to do."""
 
+import errno
+
+NO_RETRY = {
+    errno.ENOSPC: "the disk is full",
+    errno.EROFS: "the disk is read-only",
+    errno.EACCES: "it may not be written",
+}
+"""Errors of the system that a second attempt would meet again, in words."""
+
 
 class FlyMirageError(Exception):
     """Base of every error that a user can meet; its text is a whole sentence and needs no traceback."""

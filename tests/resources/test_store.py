@@ -109,7 +109,7 @@ def test_a_record_of_an_unknown_version_is_refused_with_one_sentence(tmp_path: P
     commit(store, "hello")
     pointer = tmp_path / "products" / "notes" / "flat" / "product.json"
     pointer.write_text(pointer.read_text().replace('"schema_version": 1', '"schema_version": 99'))
-    with pytest.raises(ProductError, match=r"has schema version 99, this FlyMirage reads version 1"):
+    with pytest.raises(ProductError, match=r"has schema version 99, this FlyMirage reads up to version 1"):
         store.current("notes", "flat")
 
 
