@@ -6,7 +6,7 @@ A pool limits how many stages use the thing at once; requests per minute are lim
 from collections.abc import Sequence
 
 from flymirage_core.settings import Settings
-from resources.tools import choose_rasterizer
+from resources.tools import choose_rasterizer, is_service
 
 POOL_OF_SERVICE = {
     "scene_writer": "language_model",
@@ -28,21 +28,14 @@ POOL_LIMITS = {
 
 def is_paid(settings: Settings, ports: Sequence[str]) -> bool:
     """True if a service that costs money fills one of the ports."""
-    return any(_is_service(settings, port) for port in ports)
+    return any(is_service(settings, port) for port in ports)
 
 
 def pool_of(settings: Settings, ports: Sequence[str]) -> str | None:
     """The pool of a stage that uses ``ports``: that of its first service, else of the renderer, else none."""
     for port in ports:
-        if _is_service(settings, port):
+        if is_service(settings, port):
             return POOL_OF_SERVICE[port]
     if "rasterizer" not in ports:
         return None
     return "gpu" if choose_rasterizer(settings).name.startswith("gsplat") else "cpu_renderer"
-
-
-def _is_service(settings: Settings, port: str) -> bool:
-    if port not in POOL_OF_SERVICE:
-        return False
-    chosen = getattr(settings.tools, port) or ("service" if settings.profile == "paper" else "offline")
-    return chosen == "service"

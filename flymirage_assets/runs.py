@@ -42,9 +42,20 @@ def dagster_instance() -> Iterator[dg.DagsterInstance]:
 
 
 def run_scene(instance: dg.DagsterInstance, scene: str, assets: Sequence[str] = ()) -> RunOutcome:
-    """Materialise the products of one scene, all or ``assets``; what is up to date costs nothing."""
+    """Materialise the products of one scene, all or ``assets``; what is up to date costs nothing.
+
+    If a service refused the scene's content and it got another description, once more from there.
+    """
+    from flymirage_assets.definitions import defs, store_of  # late: it reads the settings
+
     instance.add_dynamic_partitions(str(scenes.name), [scene])
-    return _run(instance, "grow_scene", partition_key=scene, assets=assets)
+    while True:
+        before = store_of(defs).origin(scene)
+        outcome = _run(instance, "grow_scene", partition_key=scene, assets=assets)
+        after = store_of(defs).origin(scene)
+        if not outcome.error or after is None or after.reroll == (0 if before is None else before.reroll):
+            return outcome
+        logging.getLogger("flymirage").warning(outcome.error)
 
 
 def run_export(instance: dg.DagsterInstance, form: str, config: dict[str, Any]) -> RunOutcome:

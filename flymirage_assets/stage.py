@@ -26,15 +26,18 @@ from flymirage_assets.conditions import condition_of
 from flymirage_assets.failures import one_clear_sentence
 from flymirage_assets.hashing import hash_of, input_hash_of
 from flymirage_assets.pools import is_paid, pool_of
+from flymirage_core.errors import ModerationError, ProductError
 from flymirage_core.pictures.encoding import jpeg_under
 from flymirage_core.product import Product
 from flymirage_core.progress import current_listener, listening
 from flymirage_core.scene.keys import check_scene_key, rng
 from flymirage_core.settings import Settings
 from resources.io_manager import Commit, ProductIOManager
-from resources.records import ProductRecord, SceneOrigin
-from resources.store import Staged, Store
-from resources.tools import Tools, choose_tools
+from resources.records import NewerRecordError, ProductRecord, SceneOrigin
+from resources.rerolls import roll_again
+from resources.services.account import Account
+from resources.store import ALL_SCENES, Staged, Store
+from resources.tools import Tools, choose_tools, is_service
 
 scenes = dg.DynamicPartitionsDefinition(name="scene")
 PREVIEW_BYTES = 45_000
@@ -106,10 +109,13 @@ class ProductAsset:
 
         ``digests`` names the exact bytes of everything that goes in: upstream products, or the scene's registration.
         """
-        tools = choose_tools(self.settings)
+        origin = store.origin(scene) if scene != ALL_SCENES else None
+        reroll = origin.reroll if origin is not None else 0
+        account = Account(store, scene, self.name, self.settings.services, reroll)
+        tools = choose_tools(self.settings, account)
         tool_names = {port: getattr(tools, port).name for port in self.tools}
         input_hash = input_hash_of(self.code_version, digests, tool_names)
-        current = store.current(self.name, scene)
+        current = _readable(store, self.name, scene, log)
         if current is not None and current.input_hash == input_hash and store.is_whole(current):
             log(f"{self.name} of {scene}: inputs, code and settings are unchanged, nothing to do")
             return Commit(current, preview=store.preview(current), returns=self.returns)
@@ -122,13 +128,25 @@ class ProductAsset:
         with store.scratch() as scratch, listening(report):
             declared = cast(Settings, _Declared(self.settings, self.sections))
             stage = Stage(scene, declared, tools, store, scratch)
-            product = self.compute(stage, **inputs)
+            product = self._computed(stage, inputs)
             staged = store.stage(product)
             preview = jpeg_under(self.draw(stage, product, **inputs), PREVIEW_BYTES)
         report("", 1, 1)
         seconds = time.perf_counter() - started
         record = self._record(scene, staged, input_hash, digests, tool_names, product, seconds)
+        if is_paid(self.settings, self.tools):
+            usage = account.usage_since(current.created_at if current is not None else "")
+            record = record.model_copy(update={"usd": usage["usd"], "usage": usage})
         return Commit(record, staged, preview, returns=self.returns)
+
+    def _computed(self, stage: Stage, inputs: Mapping[str, Any]) -> Product:
+        """The product; a content that a service refused costs the scene its description, if another can be had."""
+        try:
+            return self.compute(stage, **inputs)
+        except ModerationError as refusal:
+            if self.name == "description" or not is_service(self.settings, "scene_writer"):
+                raise
+            raise roll_again(stage.store, stage.scene, refusal, self.settings.services.rerolls) from refusal
 
     def _record(
         self,
@@ -227,6 +245,17 @@ def product_asset(
     return decorate
 
 
+def _readable(store: Store, asset: str, scene: str, log: Callable[[str], None]) -> ProductRecord | None:
+    """The current record; none if it is torn, for then the product is made again."""
+    try:
+        return store.current(asset, scene)
+    except NewerRecordError:
+        raise
+    except ProductError as error:
+        log(str(error))
+        return None
+
+
 def upstream_digests(store: Store, scene: str, upstream: Iterable[str]) -> dict[str, str]:
     """Content hashes of the current upstream products; of the scene's registration where there are none."""
     records = {asset: store.current(asset, scene) for asset in upstream}
@@ -269,6 +298,7 @@ def materialize_result(commit: Commit, store: Store) -> Any:
         "seconds": record.seconds,
         "bytes": record.bytes,
         "usd": record.usd,
+        **{name: value for name, value in record.usage.items() if name != "usd"},
         "folder": dg.MetadataValue.path(str(folder)),
         "reused": commit.staged is None,
     }

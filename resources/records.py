@@ -1,5 +1,7 @@
 """The small JSON documents of the store: what a scene is, and which bytes are a product's current ones."""
 
+import json
+from collections.abc import Callable
 from typing import Any, Literal, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
@@ -10,6 +12,12 @@ from flymirage_core.splats.frames import Up
 
 SCHEMA_VERSION = 1
 """Of both documents; raised when a reader of the old ones would misread the new ones."""
+UPGRADES: dict[int, Callable[[dict[str, Any]], dict[str, Any]]] = {}
+"""What makes a document of version n into one of version n + 1. Old documents are upgraded whenever they are read."""
+
+
+class NewerRecordError(ProductError):
+    """A document was written by a newer FlyMirage: it must not be replaced by this one."""
 
 
 class Document(BaseModel):
@@ -29,6 +37,7 @@ class SceneOrigin(Document):
     file_sha256: str = ""
     up: Up = "auto"
     scale: float | None = None  # metres per file unit; None = the file is in metres
+    reroll: int = 0  # generated: how many of its descriptions a service refused
 
     @property
     def place(self) -> tuple[str, str] | None:
@@ -64,6 +73,7 @@ class ProductRecord(Document):
     summary: dict[str, str | int | float]
     seconds: float
     usd: float = 0.0
+    usage: dict[str, float] = {}  # calls, tokens, images, credits of services, and what they cost
     created_at: str = Field(description="UTC, ISO 8601")
 
     @property
@@ -86,13 +96,18 @@ D = TypeVar("D", bound=Document)
 
 def _parse(kind: type[D], text: str, where: str) -> D:
     try:
-        version = Document.model_validate_json(text).schema_version
-        if version != SCHEMA_VERSION:
-            raise ProductError(
-                f"{where} has schema version {version}, this FlyMirage reads version {SCHEMA_VERSION}: "
-                "use the FlyMirage that wrote it, or delete the folder and materialise again"
+        found = json.loads(text)
+        version = found.get("schema_version", 1) if isinstance(found, dict) else 1
+        if version > SCHEMA_VERSION:
+            raise NewerRecordError(
+                f"{where} has schema version {version}, this FlyMirage reads up to version {SCHEMA_VERSION}: "
+                "use the FlyMirage that wrote it, or a newer one"
             )
-        return kind.model_validate_json(text)
+        for step in range(version, SCHEMA_VERSION):
+            found = {**UPGRADES[step](found), "schema_version": step + 1}
+        return kind.model_validate(found)
+    except json.JSONDecodeError as error:
+        raise ProductError(f"{where} cannot be read: it is torn ({error}); delete it and materialise again") from error
     except ValidationError as error:
         first = error.errors()[0]
         field = ".".join(str(part) for part in first["loc"]) or "the document"

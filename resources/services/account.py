@@ -2,7 +2,8 @@
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+from datetime import datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -32,6 +33,13 @@ class Account:
     @cached_property
     def ledger(self) -> Ledger:
         return Ledger(self.database, self.settings.budget)
+
+    def usage_since(self, made_at: str) -> dict[str, float]:
+        """What this product cost since the one before it was made (ISO 8601; "" = ever), and its scene in all."""
+        since = datetime.fromisoformat(made_at).timestamp() if made_at else 0.0
+        product = self.ledger.spent(self.scene, self.asset, since)
+        numbers = {name: float(value) for name, value in asdict(product).items()}
+        return {**numbers, "scene_usd": self.ledger.spent(self.scene).usd}
 
     def pace(self, service: str, settings: PaceSettings) -> Pace:
         return Pace(self.database, service, settings)

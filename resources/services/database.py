@@ -39,23 +39,33 @@ class Database:
     """Opened for each transaction: nothing is shared between threads or survives a fork."""
 
     def __init__(self, folder: Path) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
         self.path = folder / "services.sqlite"
-        with self.transaction() as connection:
+        self._is_ready = False
+
+    def _ready(self) -> None:
+        """The file is made when it is first needed: whoever only wants to know what there is leaves no trace."""
+        if self._is_ready:
+            return
+        self.folder.mkdir(parents=True, exist_ok=True)
+        connection = sqlite3.connect(self.path, timeout=60)
+        try:
             connection.executescript(SCHEMA)
+        finally:
+            connection.close()
+        self._is_ready = True
 
     @contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
         """A write transaction of its own, durable when it ends (synchronous=FULL)."""
+        self._ready()
         connection = sqlite3.connect(self.path, timeout=60, isolation_level=None)
         try:
             connection.row_factory = sqlite3.Row
             connection.execute("PRAGMA synchronous=FULL")
             connection.execute("BEGIN IMMEDIATE")
             yield connection
-            if connection.in_transaction:
-                connection.execute("COMMIT")
+            connection.execute("COMMIT")
         except BaseException:
             if connection.in_transaction:
                 connection.execute("ROLLBACK")
@@ -66,6 +76,7 @@ class Database:
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
         """For queries."""
+        self._ready()
         connection = sqlite3.connect(self.path, timeout=60)
         try:
             connection.row_factory = sqlite3.Row

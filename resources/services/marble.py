@@ -111,7 +111,7 @@ class MarbleWorldModel:
     def _brought(self, start: Start) -> Journal:
         """The start's journal, carried on to `kept` or `failed`. One process at a time works on a start."""
         locks = self.account.database.folder / "locks"
-        locks.mkdir(exist_ok=True)
+        locks.mkdir(parents=True, exist_ok=True)
         try:
             with FileLock(locks / f"{start.key}.lock", timeout=self.settings.poll_budget):
                 journal = self.journals.load(start.key) or self._submit(start)
