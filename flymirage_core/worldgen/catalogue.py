@@ -4,10 +4,14 @@ from dataclasses import replace
 
 from flymirage_core.worldgen import shapes_decor as decor
 from flymirage_core.worldgen import shapes_furniture as furniture
+from flymirage_core.worldgen import shapes_household as household
+from flymirage_core.worldgen import shapes_industrial as industrial
 from flymirage_core.worldgen import shapes_plants as plants
+from flymirage_core.worldgen import shapes_power as power
 from flymirage_core.worldgen import shapes_street as street
 from flymirage_core.worldgen import shapes_utility as utility
 from flymirage_core.worldgen import shapes_vehicles as vehicles
+from flymirage_core.worldgen import shapes_venue as venue
 from flymirage_core.worldgen.kinds import Builder, Kind, kind, round_kind
 
 
@@ -193,6 +197,99 @@ KINDS: dict[str, Kind] = {
     "wheelchair": kind(vehicles.wheelchair, (0.62, 0.7), (0.9, 1.05), (0.9, 1.0), ("navy", "nylon")),
     "stroller": kind(vehicles.stroller, (0.52, 0.6), (0.9, 1.05), (1.0, 1.1), ("slate grey", "canvas")),
     "light aircraft": kind(vehicles.aircraft, (8.4, 9.6), (5.8, 6.6), (2.0, 2.3), ("white", "painted aluminium")),
+    # plant and workshops
+    "pressure vessel": round_kind(industrial.pressure_vessel, (1.1, 1.4), (2.6, 3.4), ("light grey", "painted steel")),
+    "heat exchanger": kind(industrial.heat_exchanger, (2.1, 2.7), (0.7, 0.85), (1.1, 1.3), ("teal", "painted steel")),
+    "boiler": kind(industrial.boiler, (1.2, 1.45), (1.5, 1.8), (2.0, 2.4), ("forest green", "painted steel")),
+    "compressor": kind(industrial.compressor, (1.25, 1.5), (0.6, 0.75), (1.05, 1.25), ("blue", "painted steel")),
+    "lathe": kind(industrial.lathe, (1.8, 2.2), (0.75, 0.95), (1.3, 1.55), ("sage", "painted steel")),
+    "drill press": kind(industrial.drill_press, (0.5, 0.62), (0.75, 0.9), (1.65, 1.9), ("teal", "painted steel")),
+    "robot arm": kind(industrial.robot_arm, (0.75, 0.95), (1.2, 1.5), (1.75, 2.1), ("orange", "painted steel")),
+    "valve station": kind(industrial.valve_station, (1.3, 1.6), (0.42, 0.52), (1.1, 1.3), ("sky blue", "painted steel")),
+    "conveyor": kind(industrial.conveyor, (2.6, 3.6), (0.75, 0.9), (0.95, 1.15), ("teal", "painted steel")),
+    "centrifuge": round_kind(industrial.centrifuge, (0.9, 1.1), (1.1, 1.3), ("silver", "stainless steel")),
+    "mixing vat": round_kind(industrial.mixing_vat, (1.2, 1.4), (1.45, 1.65), ("silver", "stainless steel")),
+    "hopper": round_kind(industrial.hopper, (1.2, 1.4), (2.0, 2.4), ("slate grey", "painted steel")),
+    "liquid tote": kind(industrial.liquid_tote, (1.15, 1.25), (0.98, 1.1), (1.08, 1.2), ("chalk", "plastic")),
+    "mine cart": kind(industrial.mine_cart, (0.85, 0.98), (1.4, 1.65), (0.95, 1.15), ("rust", "rusty iron")),
+    "engine block": kind(industrial.engine_block, (0.75, 0.9), (0.6, 0.75), (0.65, 0.75), ("slate grey", "cast iron")),
+    "pallet rack": kind(industrial.pallet_rack, (2.4, 2.8), (0.95, 1.1), (2.6, 3.6), ("blue", "painted steel")),
+    # power, laboratories, hazards
+    "transformer": kind(power.transformer, (1.7, 2.0), (1.2, 1.4), (1.9, 2.2), ("sage", "painted steel")),
+    "switchgear cabinet": kind(power.switchgear, (0.75, 0.9), (0.68, 0.78), (2.0, 2.2), ("light grey", "painted steel")),
+    "insulator stack": round_kind(power.insulator_stack, (0.42, 0.5), (2.2, 2.7), ("chestnut", "porcelain")),
+    "cable reel": kind(power.cable_reel, (0.68, 0.78), (1.0, 1.2), (1.05, 1.2), ("honey brown", "pine wood")),
+    "control panel": kind(power.control_panel, (1.4, 1.8), (0.65, 0.75), (1.15, 1.3), ("sage", "painted steel")),
+    "shielded cask": round_kind(power.shielded_cask, (0.9, 1.05), (1.2, 1.4), ("slate grey", "lead")),
+    "glove box": kind(power.glove_box, (1.7, 1.95), (0.95, 1.1), (1.8, 1.95), ("silver", "stainless steel")),
+    "fume hood": kind(power.fume_hood, (1.4, 1.7), (0.75, 0.85), (2.3, 2.5), ("light grey", "painted steel")),
+    "safety shower": kind(power.safety_shower, (0.62, 0.7), (0.62, 0.7), (2.1, 2.3), ("green", "painted steel")),
+    "battery bank": kind(power.battery_bank, (1.5, 1.8), (0.55, 0.65), (1.2, 1.4), ("slate grey", "plastic")),
+    "solar panel": kind(power.solar_panel, (1.6, 1.9), (1.0, 1.2), (0.8, 0.95), ("navy", "glass")),
+    "antenna mast": round_kind(power.antenna_mast, (0.75, 0.9), (3.6, 4.6), ("red", "painted steel")),
+    "satellite dish": kind(power.satellite_dish, (0.8, 1.0), (0.75, 0.95), (0.9, 1.1), ("light grey", "painted steel")),
+    "server rack": kind(power.server_rack, (0.6, 0.66), (0.95, 1.05), (1.9, 2.1), ("black", "metal")),
+    "catwalk": kind(power.catwalk, (3.4, 4.4), (0.9, 1.1), (2.4, 2.9), ("yellow", "painted steel")),
+    "gantry crane": kind(power.gantry_crane, (3.6, 4.6), (1.5, 1.7), (2.9, 3.5), ("yellow", "painted steel")),
+    "ventilation unit": kind(power.vent_unit, (1.5, 1.8), (0.95, 1.2), (1.2, 1.4), ("light grey", "galvanised steel")),
+    "air conditioner": kind(power.air_conditioner, (0.85, 1.0), (0.42, 0.5), (0.72, 0.85), ("chalk", "painted steel")),
+    "work light": kind(power.work_light, (0.58, 0.66), (0.55, 0.64), (1.7, 1.9), ("yellow", "painted steel")),
+    "shipping container": kind(power.shipping_container, (2.35, 2.45), (5.8, 6.1), (2.5, 2.65), ("rust", "painted steel")),
+    # homes, kitchens, bathrooms
+    "kitchen island": kind(household.kitchen_island, (1.8, 2.3), (0.85, 1.05), (0.9, 1.2), ("navy", "painted wood"), 0.76),
+    "garden table": kind(household.garden_table, (1.0, 1.4), (0.7, 0.9), (0.72, 0.76), ("caramel", "teak wood"), 1.0),
+    "school desk": kind(household.school_desk, (0.65, 0.75), (0.48, 0.56), (0.72, 0.78), ("honey brown", "beech wood")),
+    "pool table": kind(household.pool_table, (2.3, 2.7), (1.3, 1.5), (0.8, 0.86), ("walnut brown", "walnut")),
+    "operating table": kind(household.operating_table, (1.3, 1.5), (1.9, 2.1), (0.9, 1.0), ("light grey", "steel")),
+    "packing table": kind(household.packing_table, (1.6, 2.0), (0.75, 0.9), (0.86, 0.94), ("blue", "steel"), 1.0),
+    "bar stool": round_kind(household.bar_stool, (0.38, 0.44), (0.92, 1.05), ("walnut brown", "walnut")),
+    "garden chair": kind(household.garden_chair, (0.52, 0.6), (0.55, 0.62), (0.82, 0.92), ("caramel", "teak wood")),
+    "pew": kind(household.pew, (2.2, 3.0), (0.58, 0.66), (0.9, 1.0), ("oak brown", "oak")),
+    "bunk bed": kind(household.bunk_bed, (0.98, 1.1), (1.98, 2.1), (1.6, 1.8), ("slate grey", "painted steel")),
+    "hospital bed": kind(household.hospital_bed, (0.95, 1.05), (2.05, 2.2), (1.0, 1.1), ("chalk", "painted steel")),
+    "crib": kind(household.crib, (0.68, 0.76), (1.25, 1.4), (0.98, 1.08), ("white", "painted wood")),
+    "sun lounger": kind(household.sun_lounger, (0.65, 0.75), (1.8, 2.0), (0.6, 0.72), ("caramel", "teak wood")),
+    "massage table": kind(household.massage_table, (0.7, 0.8), (1.85, 2.0), (0.76, 0.84), ("teal", "vinyl")),
+    "stove": kind(household.stove, (0.58, 0.64), (0.6, 0.66), (0.95, 1.02), ("white", "enamel")),
+    "sink unit": kind(household.sink_unit, (1.1, 1.4), (0.58, 0.64), (1.1, 1.2), ("sage", "painted wood")),
+    "washing machine": kind(household.washing_machine, (0.58, 0.62), (0.56, 0.62), (0.84, 0.88), ("white", "enamel"), 1.0),
+    "oven": kind(household.oven, (0.85, 1.0), (0.75, 0.85), (1.6, 1.8), ("silver", "stainless steel")),
+    "bathtub": kind(household.bathtub, (0.75, 0.82), (1.6, 1.8), (0.72, 0.82), ("white", "porcelain")),
+    "toilet": kind(household.toilet, (0.38, 0.42), (0.64, 0.72), (0.76, 0.82), ("white", "porcelain")),
+    "washbasin": kind(household.washbasin, (0.55, 0.65), (0.45, 0.52), (0.98, 1.06), ("white", "porcelain")),
+    "shower cabin": kind(household.shower_cabin, (0.9, 1.0), (0.9, 1.0), (2.0, 2.1), ("powder blue", "glass")),
+    "radiator": kind(household.radiator, (0.8, 1.4), (0.12, 0.16), (0.55, 0.68), ("white", "painted steel")),
+    "fireplace": kind(household.fireplace, (1.35, 1.65), (0.48, 0.56), (1.1, 1.25), ("chalk", "marble"), 1.0),
+    "chest freezer": kind(household.chest_freezer, (1.4, 1.8), (0.72, 0.85), (0.86, 0.95), ("white", "enamel")),
+    # shops, music, sport, halls
+    "shop shelf": kind(venue.shop_shelf, (1.2, 1.8), (0.46, 0.56), (1.6, 1.9), ("chalk", "painted steel")),
+    "wine rack": kind(venue.wine_rack, (0.9, 1.1), (0.32, 0.38), (1.4, 1.8), ("oak brown", "oak")),
+    "shoe rack": kind(venue.shoe_rack, (0.75, 0.95), (0.3, 0.36), (0.5, 0.7), ("tan", "pine wood")),
+    "clothes rail": kind(venue.clothes_rail, (1.2, 1.7), (0.48, 0.54), (1.5, 1.7), ("charcoal", "painted steel")),
+    "newspaper rack": kind(venue.newspaper_rack, (0.56, 0.64), (0.38, 0.44), (1.15, 1.3), ("charcoal", "painted steel")),
+    "mannequin": kind(venue.mannequin, (0.5, 0.56), (0.4, 0.46), (1.72, 1.86), ("chalk", "plastic")),
+    "arcade machine": kind(venue.arcade_machine, (0.66, 0.74), (0.74, 0.85), (1.7, 1.85), ("blue", "plastic")),
+    "jukebox": kind(venue.jukebox, (0.76, 0.86), (0.55, 0.62), (1.35, 1.5), ("burgundy", "lacquered wood")),
+    "piano": kind(venue.piano, (1.45, 1.55), (0.6, 0.66), (1.15, 1.25), ("black", "lacquered wood"), 1.0),
+    "drum kit": kind(venue.drum_kit, (1.6, 1.9), (1.2, 1.4), (1.15, 1.3), ("red", "lacquered wood")),
+    "guitar": kind(venue.guitar, (0.38, 0.44), (0.42, 0.5), (1.0, 1.1), ("caramel", "wood")),
+    "speaker": kind(venue.speaker, (0.36, 0.44), (0.36, 0.42), (1.0, 1.2), ("charcoal", "plastic")),
+    "music stand": kind(venue.music_stand, (0.48, 0.54), (0.4, 0.46), (1.1, 1.3), ("black", "painted steel")),
+    "easel": kind(venue.easel, (0.58, 0.66), (0.68, 0.78), (1.6, 1.8), ("honey brown", "beech wood")),
+    "treadmill": kind(venue.treadmill, (0.82, 0.9), (1.7, 1.9), (1.3, 1.45), ("charcoal", "plastic")),
+    "exercise bike": kind(venue.exercise_bike, (0.5, 0.58), (1.0, 1.15), (1.2, 1.35), ("red", "painted steel")),
+    "weight bench": kind(venue.weight_bench, (1.35, 1.5), (1.2, 1.4), (1.15, 1.25), ("black", "vinyl")),
+    "gym mat": kind(venue.gym_mat, (1.0, 1.3), (1.8, 2.1), (0.05, 0.07), ("blue", "vinyl")),
+    "rocking horse": kind(venue.rocking_horse, (0.32, 0.38), (0.88, 1.0), (0.85, 0.95), ("white", "painted wood")),
+    "aquarium": kind(venue.aquarium, (1.1, 1.3), (0.44, 0.5), (1.2, 1.4), ("powder blue", "glass")),
+    "lectern": kind(venue.lectern, (0.56, 0.64), (0.46, 0.54), (1.3, 1.45), ("oak brown", "oak")),
+    "altar": kind(venue.altar, (1.7, 2.0), (0.75, 0.9), (0.96, 1.05), ("sand", "limestone"), 1.0),
+    "plinth": round_kind(venue.plinth, (0.4, 0.5), (0.9, 1.1), ("chalk", "marble"), 1.0),
+    "rope barrier": kind(venue.rope_barrier, (1.4, 1.8), (0.3, 0.34), (0.95, 1.05), ("brass", "brushed brass")),
+    "flag": kind(venue.flag, (0.55, 0.7), (0.34, 0.4), (2.2, 2.6), ("blue", "nylon")),
+    "drip stand": round_kind(venue.drip_stand, (0.5, 0.58), (1.8, 2.0), ("silver", "stainless steel")),
+    "privacy screen": kind(venue.privacy_screen, (1.5, 1.7), (0.3, 0.36), (1.7, 1.8), ("mint", "cotton")),
+    "telescope": kind(venue.telescope, (0.8, 0.95), (0.95, 1.1), (1.4, 1.6), ("brass", "brushed brass")),
 }  # fmt: skip
 
 UNKNOWN = _kind(utility.plain_box, (0.4, 0.7), (0.35, 0.5), (0.4, 0.7))

@@ -333,7 +333,8 @@ def _leaves(leaves: Leaves, material: Material, spacing: float) -> Surfels:
     grown = np.sqrt(stride)
     centres, lengths, widths = leaves.centres[::stride], leaves.lengths[::stride], leaves.widths[::stride]
     lengths, widths = lengths * grown, widths * grown
-    outward = centres - leaves.centres.mean(axis=0)
+    outward = centres - leaves.centres.mean(axis=0)  # leaves are bright on their outer and on their upper side
+    outward = outward / np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9) + [0.0, 0.0, 0.8]
     facing = np.where((np.cross(lengths, widths) * outward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
     points = np.concatenate([centres - 0.35 * lengths, centres + 0.4 * lengths])
     along = np.concatenate([lengths * 1.1, lengths * 0.9])

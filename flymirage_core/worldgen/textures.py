@@ -113,7 +113,7 @@ def _brushed(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
 
 def _enamel(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
     """Paint on metal: even, with chips that show rust at some places."""
-    chips = np.clip(fractal(points * 5.0, seed) - 0.52, 0.0, 0.12)[:, None] / 0.12
+    chips = np.clip(fractal(points * 6.0, seed) - 0.64, 0.0, 0.12)[:, None] / 0.12
     even = _grey(1 + 0.03 * value_noise(points * 1.5, seed + 3))
     return np.asarray(even * (1 - 0.7 * chips) + chips * np.array([0.28, 0.14, 0.08]))
 
