@@ -10,8 +10,9 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_settings import BaseSettings, PydanticBaseSettingsSource, SettingsConfigDict, TomlConfigSettingsSource
 
-from flymirage_core.operation_settings import Executor, GrowthSettings, OperationSettings
 from flymirage_core.annotation.settings import AnnotationSettings as AnnotationSettings
+from flymirage_core.language.settings import VerdictSettings as VerdictSettings
+from flymirage_core.operation_settings import Executor, GrowthSettings, OperationSettings
 from flymirage_core.service_settings import ServicesSettings
 
 Positive = Annotated[float, Field(gt=0)]
@@ -198,31 +199,6 @@ class FrameSettings(Section):
         return self
 
 
-class VerdictSettings(Section):
-    """Thresholds of the measured gates."""
-
-    min_alpha_coverage: Positive = 0.75
-    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame; the open door of a captured
-    room, behind which nothing was captured, takes up to a fifth of a picture."""
-    min_sharpness: Positive = 15.0
-    """Least variance of the Laplacian (grey levels squared), median over frames."""
-    min_brightness: Positive = 20.0
-    max_brightness: Positive = 235.0
-    min_target_visible: Positive = 0.5
-    """Least share of sampled frames in which the target is in the picture and not hidden."""
-    max_final_angle_deg: Positive = 25.0
-    """Most between the final view's axis and the target's centre."""
-    min_progress: Positive = 0.3
-    """Least fall of the distance to the target, as a share of its start."""
-    min_clearance: Positive = 0.15
-    max_limit_ratio: Positive = 1.1
-    """Most that the sampled flight may exceed the planner's speed, acceleration, jerk or yaw rate by, as a factor."""
-    max_end_error: Positive = 0.3
-    """Most between the flight's end and its target point."""
-    frame_step: Count = 30
-    """The paper samples every 30th frame of a 30 Hz video; at another rate the same seconds are meant."""
-
-
 class ToolSettings(Section):
     """Who fills each port; "" leaves it to the profile."""
 
@@ -251,6 +227,8 @@ class Settings(BaseSettings):
     """Who renders: "gsplat" needs a CUDA card and the ``[gpu]`` extra; "auto" takes it where both are there."""
     threads: int = Field(default=0, ge=0)
     """Rendering threads of the CPU renderer; 0 = all cores."""
+    taxonomy: str = "paper"
+    """Kinds of places: "paper" (its six categories), "site" (the project page's newer six), or a JSON file of yours."""
     executor: Executor = "in_process"
     """Who runs the stages of a run: this process, a process each, or the workers of a Celery or Ray cluster."""
     growth: GrowthSettings = GrowthSettings()

@@ -1,22 +1,27 @@
 """The measured quality gates: what is seen and flown on one flight, each a number against a threshold, with a reason.
 
-Each public ``*_gate`` function answers one `GateResult`. Frames come as `Sighting`s: pictures sampled along the flight.
-Which gates make up a verdict is the judge's business (`judge.py`).
+Each public ``*_gate`` function answers one `GateResult`. Which gates make up a verdict is the judge's business
+(`judge.py`); thresholds are calibrated on labelled damage by `benchmarks/quality.py`.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from itertools import groupby
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.annotation.boxes import ObjectBox
+from flymirage_core.annotation.boxes import BoxMap, ObjectBox
+from flymirage_core.annotation.instances import oriented_boxes
+from flymirage_core.language import picture_measures
+from flymirage_core.language.evidence import Sighting
+from flymirage_core.language.reprojection import Change
+from flymirage_core.language.settings import VerdictSettings
 from flymirage_core.language.verdicts import GateResult
 from flymirage_core.navigation.trajectories import Flight
 from flymirage_core.rendering.camera import Camera
+from flymirage_core.rendering.instances import seen_share
 from flymirage_core.rendering.views import DEPTH_UNIT
-from flymirage_core.settings import PlannerSettings, VerdictSettings
+from flymirage_core.settings import PlannerSettings
 
 PROBE_INSET = 0.5
 """Corners are probed this far towards the box's centre: real objects seldom fill the corners of their box."""
@@ -24,16 +29,10 @@ OCCLUSION_TOLERANCE = 0.15
 """Metres by which something may stand before the box without hiding it: about the error of a box's faces."""
 LEAST_VISIBLE_PROBES = 3
 """Of nine: a frame sees the target when the centre, or this many probes, are in the picture and not hidden."""
-
-
-@dataclass(frozen=True, eq=False)
-class Sighting:
-    """One sampled frame."""
-
-    frame_index: int
-    camera: Camera
-    rgb: NDArray[np.uint8]  # (H, W, 3)
-    depth: NDArray[np.uint16]  # (H, W) millimetres, 0 = no return
+CLEARANCE_SLACK = 0.17
+"""Metres: the diagonal of the occupancy's voxels, by which a clearance may be too large."""
+STILL = (0.05, 0.05)
+"""m/s and rad/s below which the drone does nothing."""
 
 
 def alpha_coverage_gate(coverage: NDArray[np.float64], settings: VerdictSettings) -> GateResult:
@@ -44,29 +43,41 @@ def alpha_coverage_gate(coverage: NDArray[np.float64], settings: VerdictSettings
     return _at_least("alpha_coverage", value, threshold, reason)
 
 
-def sharpness_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
-    """Median over the sampled frames of the variance of the Laplacian, grey levels squared.
-
-    A no-reference focus measure: J. L. Pech-Pacheco et al., "Diatom autofocusing in brightfield microscopy: a
-    comparative study", ICPR 2000. It falls with blur and with fog, and depends on the picture's size.
-    """
-    value = float(np.median([variance_of_laplacian(s.rgb) for s in sightings]))
-    threshold = settings.min_sharpness
-    reason = f"the pictures are blurred or empty: Laplacian variance {value:.1f}, at least {threshold:.1f} is asked for"
-    return _at_least("sharpness", value, threshold, reason)
+def hole_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
+    """Largest connected part without a depth return, as a share of the picture, over the sampled frames."""
+    holes = np.array([picture_measures.largest_hole(s.depth) for s in sightings])
+    worst, threshold = int(np.argmax(holes)), settings.max_hole
+    value, frame = float(holes[worst]), sightings[worst].frame_index
+    reason = f"frame {frame} has a hole of {value:.1%} of the picture, at most {threshold:.1%} are allowed"
+    return _at_most("hole", value, threshold, reason)
 
 
-def variance_of_laplacian(rgb: NDArray[np.uint8]) -> float:
-    """Sharpness of a picture (H, W, 3), grey levels squared."""
-    return float(cv2.Laplacian(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), cv2.CV_32F).var(dtype=np.float64))
+def blur_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
+    """Median blur effect of the sampled frames, 0 sharp to 1 blurred (`picture_measures.blur_effect`)."""
+    value, threshold = _median([picture_measures.blur_effect(s.luma) for s in sightings]), settings.max_blur
+    reason = f"the pictures are blurred: blur effect {value:.2f} of 1, at most {threshold:.2f} is allowed"
+    return _at_most("blur", value, threshold, reason)
+
+
+def noise_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
+    """Median noise of the sampled frames, grey levels (`picture_measures.noise_level`)."""
+    value, threshold = _median([picture_measures.noise_level(s.luma) for s in sightings]), settings.max_noise
+    reason = f"the pictures are noisy: by {value:.1f} grey levels, at most {threshold:.1f} are allowed"
+    return _at_most("noise", value, threshold, reason)
+
+
+def contrast_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
+    """Median contrast of the sampled frames, grey levels (`picture_measures.contrast`)."""
+    value, threshold = _median([picture_measures.contrast(s.luma) for s in sightings]), settings.min_contrast
+    reason = f"the pictures are foggy or empty: contrast {value:.0f} grey levels, at least {threshold:.0f} is asked for"
+    return _at_least("contrast", value, threshold, reason)
 
 
 def darkness_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
     """Mean brightness (grey levels, 0-255) of the darkest sampled frame."""
     levels = _brightness(sightings)
     worst, threshold = int(np.argmin(levels)), settings.min_brightness
-    value = float(levels[worst])
-    frame = sightings[worst].frame_index
+    value, frame = float(levels[worst]), sightings[worst].frame_index
     reason = f"frame {frame} is too dark: mean brightness {value:.0f} of 255, at least {threshold:.0f} is asked for"
     return _at_least("darkness", value, threshold, reason)
 
@@ -75,10 +86,35 @@ def glare_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> Gate
     """Mean brightness (grey levels, 0-255) of the brightest sampled frame."""
     levels = _brightness(sightings)
     worst, threshold = int(np.argmax(levels)), settings.max_brightness
-    value = float(levels[worst])
-    frame = sightings[worst].frame_index
+    value, frame = float(levels[worst]), sightings[worst].frame_index
     reason = f"frame {frame} is too bright: mean brightness {value:.0f} of 255, at most {threshold:.0f} is asked for"
     return _at_most("glare", value, threshold, reason)
+
+
+def flicker_gate(changes: Sequence[Change], settings: VerdictSettings) -> GateResult:
+    """Most by which surfaces change their grey level between neighbouring frames; 0 if no two could be compared."""
+    value, threshold = max((c.colour for c in changes), default=0.0), settings.max_flicker
+    reason = f"the pictures flicker: by {value:.1f} grey levels between two frames, at most {threshold:.1f} are allowed"
+    return _at_most("flicker", value, threshold, reason)
+
+
+def depth_jump_gate(changes: Sequence[Change], settings: VerdictSettings) -> GateResult:
+    """Largest share of points that the neighbouring frame sees at another depth; 0 if no two could be compared."""
+    value, threshold = max((c.depth for c in changes), default=0.0), settings.max_depth_jump
+    reason = f"surfaces pop up or vanish: {value:.1%} of a frame's points in the next, at most {threshold:.1%} may"
+    return _at_most("depth_jump", value, threshold, reason)
+
+
+def floater_gate(sightings: Sequence[Sighting], room: NDArray[np.float64], settings: VerdictSettings) -> GateResult:
+    """Share of the picture nearer than anything solid can be, over the sampled frames.
+
+    ``room`` (S,) is the drone's clearance at each, metres: what is seen within it is no part of the map, but a floater.
+    """
+    shares = np.array([_share_within(s, r - CLEARANCE_SLACK) for s, r in zip(sightings, room, strict=True)])
+    worst, threshold = int(np.argmax(shares)), settings.max_floaters
+    value, frame = float(shares[worst]), sightings[worst].frame_index
+    reason = f"floaters fill {value:.1%} of frame {frame} right before the camera, at most {threshold:.1%} is allowed"
+    return _at_most("floaters", value, threshold, reason)
 
 
 def target_visible_gate(sightings: Sequence[Sighting], target: ObjectBox, settings: VerdictSettings) -> GateResult:
@@ -90,6 +126,14 @@ def target_visible_gate(sightings: Sequence[Sighting], target: ObjectBox, settin
         f"at least {threshold:.0%} are asked for"
     )
     return _at_least("target_visible", value, threshold, reason)
+
+
+def target_size_gate(last: Sighting, target: ObjectBox, settings: VerdictSettings) -> GateResult:
+    """Share of the last frame's pixels that show a point in the target's box."""
+    depth = last.depth.astype(np.float32) * np.float32(DEPTH_UNIT)  # (H, W) metres
+    value, threshold = seen_share(depth, last.camera, oriented_boxes(BoxMap((target,)))), settings.min_target_share
+    reason = f"the {target.label} fills only {value:.2%} of the last picture, at least {threshold:.2%} is asked for"
+    return _at_least("target_size", value, threshold, reason)
 
 
 def sees(sighting: Sighting, target: ObjectBox) -> bool:
@@ -130,6 +174,16 @@ def progress_gate(flight: Flight, target: ObjectBox, settings: VerdictSettings) 
     return _at_least("progress", value, threshold, reason)
 
 
+def hover_gate(flight: Flight, settings: VerdictSettings) -> GateResult:
+    """Longest time in seconds for which the drone neither moves nor turns."""
+    step = float(flight.times[1] - flight.times[0]) if len(flight.times) > 1 else 0.0
+    turning = np.abs(np.angle(np.exp(1j * np.diff(flight.yaws, append=flight.yaws[-1:])))) / max(step, 1e-9)
+    still = (np.linalg.norm(flight.velocities, axis=1) < STILL[0]) & (turning < STILL[1])  # (T,)
+    value, threshold = _longest_run(still) * step, settings.max_hover
+    reason = f"the drone hovers for {value:.1f} s without turning, at most {threshold:.1f} s are allowed"
+    return _at_most("hovering", value, threshold, reason)
+
+
 def clearance_gate(flight: Flight, settings: VerdictSettings) -> GateResult:
     """Least distance in metres from the drone's centre to what may not be flown in."""
     value, threshold = flight.report.min_clearance, settings.min_clearance
@@ -159,8 +213,29 @@ def arrival_gate(flight: Flight, settings: VerdictSettings) -> GateResult:
     return _at_most("arrival", value, threshold, reason)
 
 
+def _longest_run(flags: NDArray[np.bool_]) -> int:
+    """
+    >>> _longest_run(np.array([True, False, True, True]))
+    2
+    """
+    return max((sum(1 for _ in run) for flag, run in groupby(flags.tolist()) if flag), default=0)
+
+
+def _share_within(sighting: Sighting, distance: float) -> float:
+    """Share of the pixels whose points lie nearer to the optical centre than ``distance`` metres."""
+    k = sighting.camera.intrinsics
+    u = (np.arange(k.width, dtype=np.float32) + 0.5 - k.cx) / k.fx
+    v = (np.arange(k.height, dtype=np.float32) + 0.5 - k.cy) / k.fy
+    limit = np.float32(max(distance, 0.0) / DEPTH_UNIT) / np.sqrt(1 + u[None, :] ** 2 + v[:, None] ** 2)  # (H, W)
+    return float(np.count_nonzero((sighting.depth > 0) & (sighting.depth < limit)) / sighting.depth.size)
+
+
 def _brightness(sightings: Sequence[Sighting]) -> NDArray[np.float64]:
-    return np.array([cv2.cvtColor(s.rgb, cv2.COLOR_RGB2GRAY).mean() for s in sightings])  # (S,)
+    return np.array([float(s.luma.mean(dtype=np.float64)) for s in sightings])  # (S,)
+
+
+def _median(values: Sequence[float]) -> float:
+    return float(np.median(values))
 
 
 def _ray_entry(origin: NDArray[np.float64], points: NDArray[np.float64], box: ObjectBox) -> NDArray[np.float64]:

@@ -1,0 +1,59 @@
+"""No-reference measures of single pictures: blur, noise, contrast, holes. Published formulae without learned numbers.
+
+`luma` is a picture's brightness (H, W), float32, 0..255.
+"""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Luma = NDArray[np.float32]
+
+BLUR_WIDTH = 11
+"""Pixels of the second blur's window."""
+NOISE_MASK = np.array([[1, -2, 1], [-2, 4, -2], [1, -2, 1]], np.float32)
+
+
+def to_luma(rgb: NDArray[np.uint8]) -> Luma:
+    return np.asarray(cv2.cvtColor(rgb, cv2.COLOR_RGB2GRAY), np.float32)
+
+
+def blur_effect(luma: Luma) -> float:
+    """0 (sharp) to 1 (blurred): how little a picture changes when it is blurred once more.
+
+    F. Crete, T. Dolmiere, P. Ladret, M. Nicolas, "The blur effect: perception and estimation with a new no-reference
+    perceptual blur metric", SPIE 6492, 2007: the greater of both directions.
+    """
+    worst = 0.0
+    for axis in (0, 1):
+        window = (BLUR_WIDTH, 1) if axis == 1 else (1, BLUR_WIDTH)
+        steps = np.abs(np.diff(luma, axis=axis))
+        blurred = np.abs(np.diff(cv2.blur(luma, window), axis=axis))
+        total = float(steps.sum(dtype=np.float64))
+        kept = float(np.maximum(steps - blurred, 0).sum(dtype=np.float64))
+        worst = max(worst, (total - kept) / total if total > 0 else 1.0)
+    return worst
+
+
+def noise_level(luma: Luma) -> float:
+    """Standard deviation of the noise, grey levels: what a mask blind to edges' first order leaves.
+
+    J. Immerkaer, "Fast noise variance estimation", Computer Vision and Image Understanding 64 (1996).
+    """
+    left = cv2.filter2D(luma, cv2.CV_32F, NOISE_MASK)[1:-1, 1:-1]
+    return float(np.sqrt(np.pi / 2) / 6 * np.abs(left).mean(dtype=np.float64))
+
+
+def contrast(luma: Luma) -> float:
+    """Grey levels between the 5th and the 95th percentile."""
+    low, high = np.percentile(luma, [5, 95])
+    return float(high - low)
+
+
+def largest_hole(depth: NDArray[np.uint16]) -> float:
+    """Share of the picture that its largest connected part without a depth return takes; 0 = no return."""
+    missing = (depth == 0).astype(np.uint8)
+    if not missing.any():
+        return 0.0
+    _, _, stats, _ = cv2.connectedComponentsWithStats(missing, connectivity=4)
+    return float(stats[1:, cv2.CC_STAT_AREA].max() / depth.size)
