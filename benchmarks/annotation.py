@@ -164,17 +164,13 @@ def splat_scene(name: str, cloud: GaussianCloud, centre: np.ndarray, settings: S
 
 def generated(key: str, settings: Settings) -> Scene:
     from flymirage_core.scene.writer import OfflineSceneWriter
-    from flymirage_core.worldgen.layout import lay_out
+    from flymirage_core.worldgen.assembly import build_truth
     from flymirage_core.worldgen.model import OfflineWorldModel
 
     description = OfflineSceneWriter().describe(key)
     world = OfflineWorldModel(settings.generation).build(description)
-    room, truth = lay_out(description)
-    openings = []
-    for o in (*room.windows, *room.doors):
-        wall = room.walls[o.wall]
-        ends = np.array([wall.origin + wall.along * o.left, wall.origin + wall.along * o.right])  # (2, 2)
-        openings.append(np.array([[*ends.min(axis=0), o.bottom], [*ends.max(axis=0), o.top]]))
+    truth = build_truth(description)
+    openings = [np.array(corners) for corners in truth.openings]
     category = f"{description.category} / {description.subcategory}"
     known = {"truth": truth.objects, "openings": openings, "category": category}
     return splat_scene(key, world.cloud, world.centre, settings, **known)

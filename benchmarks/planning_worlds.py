@@ -15,7 +15,8 @@ from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.scene.writer import OfflineSceneWriter
 from flymirage_core.settings import Settings
 from flymirage_core.splats.imports import import_world
-from flymirage_core.worldgen.model import OfflineWorldModel, build_truth
+from flymirage_core.worldgen.assembly import build_truth
+from flymirage_core.worldgen.model import OfflineWorldModel
 
 RESOLUTION = 0.1
 PAIRS = 20

@@ -54,6 +54,10 @@ class Occupied:
     def add(self, solid: Solid) -> None:
         self.rows.append((solid.x, solid.y, solid.width / 2, solid.depth / 2, solid.bottom, solid.top, solid.yaw))
 
+    def solids(self) -> list[Solid]:
+        """All boxes that are taken."""
+        return [Solid(x, y, 2 * w, 2 * d, bottom, top, yaw) for x, y, w, d, bottom, top, yaw in self.rows]
+
     def hits(self, solid: Solid, gap: float) -> bool:
         """True where the plans, grown by ``gap``, overlap and the height ranges do too (touching is allowed)."""
         if not self.rows:

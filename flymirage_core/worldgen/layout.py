@@ -1,21 +1,26 @@
-"""Where everything stands: a description's objects placed in its room, honouring its words, never through each other.
+"""Where everything stands: a description's objects placed in its spaces, honouring its words, never through each other.
 
-Large things first: along the walls, then groups in the open, then what stands on them and hangs on walls and ceiling.
-Each is tried at seeded random spots; the first that is free is taken. What finds no spot is reported, not squeezed in.
+Large things first: along the walls, then groups in the open, then what belongs to them, stands on them, and hangs on
+walls and overhead. Each is tried at seeded random spots; the first that is free is taken. What finds no spot is
+reported, not squeezed in.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flymirage_core.scene.description import SceneDescription
 from flymirage_core.scene.design import PlannedObject
-from flymirage_core.scene.keys import rng as seeded
-from flymirage_core.worldgen.catalogue import Kind, kind_of
+from flymirage_core.worldgen.building import ceiling_at
+from flymirage_core.worldgen.catalogue import kind_of
 from flymirage_core.worldgen.footprints import Occupied, Solid
-from flymirage_core.worldgen.room import Room, room_for
-from flymirage_core.worldgen.truth import PlacedObject, Unplaced, WorldTruth
+from flymirage_core.worldgen.kinds import Kind
+from flymirage_core.worldgen.place import Place, Space, Wall
+from flymirage_core.worldgen.structure import Structure
+from flymirage_core.worldgen.truth import PlacedObject, Unplaced
+
+Size = tuple[float, float, float]
 
 CHAIR_SPACE = 0.5
 """Metres kept free round a table in the open, on top of the walkway."""
@@ -38,35 +43,47 @@ FRONT_OF_PICTURE = 0.35
 """Nothing stands this close before a thing on the wall."""
 LOW_HANGING = 1.95
 """Nothing hangs lower than this, except over a table."""
+HANGING_AT = (2.1, 3.0)
+"""Heights of the undersides of what hangs in high spaces and in the open air."""
 TRIES = 250
 """Random spots that are tried for one object or group."""
+SHARES = {"small": (0.0, 0.35), "medium": (0.2, 0.8), "large": (0.65, 1.0)}
+"""Of the way from a kind's smallest to its largest size."""
+OPEN_TOP = 15.0
+"""Metres: things in the open air are lower."""
 
 
 @dataclass
 class Layout:
-    """The room being furnished."""
+    """The place being furnished."""
 
-    room: Room
-    scene: str
+    place: Place
     centre: tuple[float, float, float]
+    rng: np.random.Generator
     objects: list[PlacedObject] = field(default_factory=list)
     occupied: Occupied = field(default_factory=Occupied)
-    kept_clear: Occupied = field(default_factory=Occupied)  # before windows and doors
+    kept_clear: Occupied = field(default_factory=Occupied)  # before windows and doors, and from doors to the middle
     missing: dict[tuple[str, str], int] = field(default_factory=dict)
     anchored: dict[int, int] = field(default_factory=dict)  # chairs already round each anchor
 
-    def fits(self, solid: Solid, gap: float) -> bool:
-        """Inside the room, out of the free ball, and ``gap`` metres away from everything (in plan)."""
-        x, y, z = self.room.dimensions
+    def fits(self, space: Space, solid: Solid, gap: float) -> bool:
+        """Inside the space, out of the free ball, and ``gap`` metres away from everything (in plan)."""
         reach = solid.reach
-        inside = abs(solid.x) + reach[0] <= x / 2 and abs(solid.y) + reach[1] <= y / 2 and solid.top <= z + 1e-6
-        return inside and solid.distance_to(self.centre) >= FREE_BALL and not self.occupied.hits(solid, gap)
+        spot = np.array([solid.x, solid.y])
+        if not ((spot - reach >= space.low - 1e-6) & (spot + reach <= space.high + 1e-6)).all():
+            return False
+        top = OPEN_TOP if space.open_air else min(ceiling_at(space, spot + s * reach) for s in (-1, 1))
+        lowest = solid.top <= top + 1e-6
+        return lowest and solid.distance_to(self.centre) >= FREE_BALL and not self.occupied.hits(solid, gap)
 
-    def fits_clear(self, solid: Solid, gap: float) -> bool:
-        """`fits`, and not before a window or door either."""
-        return self.fits(solid, gap) and not self.kept_clear.hits(solid, 0.0)
+    def fits_clear(self, space: Space, solid: Solid, gap: float) -> bool:
+        """`fits`, and not before a window or in the way of a door either."""
+        return self.fits(space, solid, gap) and not self.kept_clear.hits(solid, 0.0)
 
-    def put(self, planned: PlannedObject, solid: Solid, seed: int, support: int = -1) -> int:
+    def first(self, space: Space, spots: Iterator[Solid], gap: float) -> Solid | None:
+        return next((s for s in spots if self.fits_clear(space, s, gap)), None)
+
+    def put(self, planned: PlannedObject, space: Space, solid: Solid, support: int = -1) -> int:
         """Record an object; returns its id."""
         number = len(self.objects)
         self.objects.append(
@@ -75,12 +92,14 @@ class Layout:
                 planned.noun,
                 planned.colour,
                 planned.material,
+                planned.state,
+                space.zone.name,
                 planned.placement,
                 (round(solid.x, 4), round(solid.y, 4), round((solid.bottom + solid.top) / 2, 4)),
                 (round(solid.width, 4), round(solid.depth, 4), round(solid.top - solid.bottom, 4)),
                 round(solid.yaw, 5),
                 support,
-                seed,
+                int(self.rng.integers(1 << 31)),
             )
         )
         if not kind_of(planned.noun).flat:
@@ -90,27 +109,72 @@ class Layout:
     def miss(self, noun: str, reason: str, count: int = 1) -> None:
         self.missing[noun, reason] = self.missing.get((noun, reason), 0) + count
 
+    def named(self, planned: PlannedObject, space: Space) -> list[PlacedObject]:
+        """The placed things that ``planned`` is relative to: those of its own space, else any."""
+        every = [o for o in self.objects if planned.relative_to and o.noun == planned.relative_to]
+        return [o for o in every if o.zone == space.zone.name] or every
 
-def lay_out(description: SceneDescription) -> tuple[Room, WorldTruth]:
-    """Furnish the room of a description. All randomness comes from the scene's key."""
-    room = room_for(description)
-    rng = seeded(description.scene, "layout")
-    height = min(1.5, room.dimensions[2] - 1.2)
-    centre = (
-        round(rng.uniform(-0.3, 0.3), 3),
-        round(rng.uniform(-0.3, 0.3), 3),
-        round(height + rng.uniform(-0.1, 0.1), 3),
-    )
-    layout = Layout(room, description.scene, centre)
-    _keep_openings_clear(layout)
-    by_placement = {p: [o for o in description.objects if o.placement == p] for p in PLACERS}
-    for placement, place in PLACERS.items():
-        for planned in sorted(by_placement[placement], key=_footprint, reverse=True):
-            kind = kind_of(planned.noun)
-            set_size = kind.size(rng, room.dimensions[2])
-            place(layout, planned, kind, set_size, rng)
-    unplaced = tuple(Unplaced(noun, count, reason) for (noun, reason), count in layout.missing.items())
-    return room, WorldTruth(description.scene, room.dimensions, centre, tuple(layout.objects), unplaced)
+
+@dataclass(frozen=True)
+class Furnished:
+    """What `furnish` found: c, the objects in their places, and those without one."""
+
+    centre: tuple[float, float, float]
+    objects: tuple[PlacedObject, ...]
+    unplaced: tuple[Unplaced, ...]
+
+
+def furnish(
+    place: Place, structures: list[Structure], objects: tuple[PlannedObject, ...], rng: np.random.Generator
+) -> Furnished:
+    """Put the planned objects into the place, round what the building takes up. c comes first."""
+    occupied, clear = Occupied(), Occupied()
+    for structure in structures:
+        for solid in structure.solids:
+            occupied.add(solid)
+        for solid in structure.clear:
+            clear.add(solid)
+    layout = Layout(place, _centre(place, occupied, rng), rng, occupied=occupied, kept_clear=clear)
+    _keep_ways_clear(layout)
+    for placement, placer in PLACERS.items():
+        for planned in sorted((o for o in objects if o.placement == placement), key=_footprint, reverse=True):
+            space = place.space(planned.zone)
+            if space is None:
+                layout.miss(planned.noun, "no free spot for its zone", planned.count)
+            else:
+                placer(layout, space, planned, kind_of(planned.noun))
+    missing = tuple(Unplaced(noun, count, reason) for (noun, reason), count in layout.missing.items())
+    return Furnished(layout.centre, tuple(layout.objects), missing)
+
+
+def _centre(place: Place, occupied: Occupied, rng: np.random.Generator) -> tuple[float, float, float]:
+    """c: near the main space's middle, at a head's height, clear of the building itself."""
+    main = place.spaces[0]
+    height = min(1.5, main.height - 1.2)
+    best, most = (0.0, 0.0, height), -1.0
+    for _ in range(TRIES):
+        share = rng.uniform(-0.12, 0.12, 2)
+        spot = main.middle + share * main.size * (main.size > 4.0)
+        point = (round(float(spot[0]), 3), round(float(spot[1]), 3), round(height + float(rng.uniform(-0.1, 0.1)), 3))
+        free = min((s.distance_to(point) for s in occupied.solids()), default=9.0)
+        if free > most:
+            best, most = point, free
+        if free > FREE_BALL + 0.1:
+            break
+    return best
+
+
+def _keep_ways_clear(layout: Layout) -> None:
+    """From every door and doorway to the middle of its space there is a way."""
+    for space in layout.place.spaces:
+        for wall in space.walls:
+            for opening in (o for o in wall.openings if o.kind == "doorway"):
+                start = wall.at((opening.left + opening.right) / 2, 0.0)
+                way = space.middle - start
+                length = float(np.hypot(*way))
+                x, y = start + way / 2
+                yaw = float(np.arctan2(way[1], way[0]))
+                layout.kept_clear.add(Solid(float(x), float(y), length, 0.8, 0.0, 2.0, yaw))
 
 
 def _footprint(planned: PlannedObject) -> float:
@@ -120,60 +184,55 @@ def _footprint(planned: PlannedObject) -> float:
     return 0.0 if kind.flat else x * y * (1 + z)
 
 
-def _keep_openings_clear(layout: Layout) -> None:
-    """Nobody puts a wardrobe before a window or anything before a door."""
-    for opening, depth in [(w, 0.5) for w in layout.room.windows] + [(d, 1.1) for d in layout.room.doors]:
-        wall = layout.room.walls[opening.wall]
-        x, y = wall.at((opening.left + opening.right) / 2, depth / 2)
-        width = opening.right - opening.left
-        layout.kept_clear.add(Solid(float(x), float(y), width, depth, opening.bottom, opening.top, wall.yaw))
+def _size(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> Size:
+    """A size of the kind as the plan's word says: large in all directions or small in all, with some freedom."""
+    rng = layout.rng
+    large = rng.uniform(*SHARES[planned.size])
+    share = np.full(3, large) if kind.square else np.clip(large + rng.normal(0.0, 0.12, 3), 0.0, 1.0)
+    x, y, z = (float(a + s * (b - a)) for a, b, s in zip(kind.smallest, kind.largest, share, strict=True))
+    return x, y, min(space.height, OPEN_TOP) if kind.full_height else z
 
 
-def _seed(rng: np.random.Generator) -> int:
-    return int(rng.integers(1 << 31))
+def _solid_walls(space: Space) -> list[Wall]:
+    return [w for w in space.walls if w.enclosure != "open"]
 
 
-def _place_against_wall(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
+def _place_against_wall(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
     for _ in range(planned.count):
-        x, y, z = size
-        solid = _first(layout, _spots_along_walls(layout.room, x, y, 0.0, z, rng), SIDE_GAP)
+        size = _size(layout, space, planned, kind)
+        solid = layout.first(space, _spots_along_walls(layout, space, size, 0.0), SIDE_GAP)
         if solid is None:
             layout.miss(planned.noun, "no free stretch of wall")
         else:
-            layout.put(planned, solid, _seed(rng))
+            layout.put(planned, space, solid)
 
 
-def _spots_along_walls(
-    room: Room, width: float, depth: float, bottom: float, height: float, rng: np.random.Generator
-) -> Iterator[Solid]:
-    for _ in range(TRIES):
-        wall = room.walls[int(rng.integers(len(room.walls)))]
-        along = rng.uniform(width / 2 + 0.1, max(wall.length - width / 2 - 0.1, width / 2 + 0.11))
-        x, y = wall.at(along, WALL_GAP + depth / 2)
-        yield Solid(float(x), float(y), width, depth, bottom, bottom + height, wall.yaw)
+def _spots_along_walls(layout: Layout, space: Space, size: Size, bottom: float) -> Iterator[Solid]:
+    walls = [w for w in _solid_walls(space) if bottom == 0 or bottom + size[2] <= w.height]
+    lengths = np.array([w.length for w in walls])
+    for _ in range(TRIES if walls else 0):
+        wall = walls[int(layout.rng.choice(len(walls), p=lengths / lengths.sum()))]
+        along = layout.rng.uniform(size[0] / 2 + 0.1, max(wall.length - size[0] / 2 - 0.1, size[0] / 2 + 0.11))
+        x, y = wall.at(along, WALL_GAP + size[1] / 2)
+        yield Solid(float(x), float(y), size[0], size[1], bottom, bottom + size[2], wall.yaw)
 
 
-def _first(layout: Layout, spots: Iterator[Solid], gap: float) -> Solid | None:
-    return next((s for s in spots if layout.fits_clear(s, gap)), None)
-
-
-def _place_in_row(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
-    """Side by side, as many in one row as find room: four, else three, two, one."""
+def _place_in_row(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """Side by side, as many in one row as find room: six at most, else fewer."""
+    size = _size(layout, space, planned, kind)
     left = planned.count
     while left > 0:
-        for count in range(min(left, 4), 0, -1):
+        for count in range(min(left, 6), 0, -1):
             pitch = size[0] + SIDE_GAP
             row = (count * pitch - SIDE_GAP, size[1], size[2])
-            spots = _spots_in_the_open(layout, row, rng) if count > 1 else _spots_anywhere(layout, row, rng)
-            solid = _first(layout, spots, PASSAGE if size[2] > TALL else WALKWAY)
+            if max(row[:2]) > max(space.size):
+                continue
+            spots = _spots_in_the_open(layout, space, row) if count > 1 else _spots_anywhere(layout, space, row)
+            solid = layout.first(space, spots, PASSAGE if size[2] > TALL else WALKWAY)
             if solid is not None:
                 for i in range(count):
                     shift = (i - (count - 1) / 2) * pitch
-                    layout.put(planned, solid.shifted(shift, 0.0, size[0], size[1]), _seed(rng))
+                    layout.put(planned, space, solid.shifted(shift, 0.0, size[0], size[1]))
                 left -= count
                 break
         else:
@@ -181,90 +240,84 @@ def _place_in_row(
             return
 
 
-def _spots_in_the_open(layout: Layout, size: tuple[float, float, float], rng: np.random.Generator) -> Iterator[Solid]:
+def _spots_in_the_open(layout: Layout, space: Space, size: Size) -> Iterator[Solid]:
     """Anywhere on the floor, square to the walls."""
-    x, y, _ = layout.room.dimensions
     for _ in range(TRIES):
-        yaw = float(rng.integers(4)) * np.pi / 2
-        spot = rng.uniform(-0.5, 0.5, 2) * (x - 0.3, y - 0.3)
+        yaw = float(layout.rng.integers(4)) * np.pi / 2
+        spot = space.middle + layout.rng.uniform(-0.5, 0.5, 2) * (space.size - 0.3)
         yield Solid(float(spot[0]), float(spot[1]), size[0], size[1], 0.0, size[2], yaw)
 
 
-def _spots_anywhere(layout: Layout, size: tuple[float, float, float], rng: np.random.Generator) -> Iterator[Solid]:
+def _spots_anywhere(layout: Layout, space: Space, size: Size) -> Iterator[Solid]:
     """For things that stand alone: tall ones near the walls, low ones anywhere."""
-    for solid in _spots_in_the_open(layout, size, rng):
-        if size[2] <= TALL:
+    walls = _solid_walls(space)
+    for solid in _spots_in_the_open(layout, space, size):
+        if size[2] <= TALL or not walls:
             yield solid
             continue
-        wall = layout.room.walls[int(rng.integers(len(layout.room.walls)))]
-        x, y = wall.at(rng.uniform(0.1, 0.9) * wall.length, max(size[:2]) / 2 + rng.uniform(0.05, 0.35))
+        wall = walls[int(layout.rng.integers(len(walls)))]
+        along = layout.rng.uniform(0.1, 0.9) * wall.length
+        x, y = wall.at(along, max(size[:2]) / 2 + layout.rng.uniform(0.05, 0.35))
         yield Solid(float(x), float(y), size[0], size[1], 0.0, size[2], wall.yaw)
 
 
-def _place_on_floor(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
+def _place_on_floor(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
     """Large things in the open with a passage round them; small ones wherever there is a gap; rugs under things."""
     if kind.flat:
-        _spread_rugs(layout, planned, size, rng)
+        _spread_rugs(layout, space, planned, kind)
         return
     for _ in range(planned.count):
-        own = size if kind.top else kind.size(rng, layout.room.dimensions[2])
+        own = _size(layout, space, planned, kind)
         small = max(own[:2]) < 0.9 or kind.full_height
-        if kind.full_height:
-            spots, gap = _spots_in_the_open(layout, own, rng), PASSAGE
-        elif small:
-            spots, gap = _spots_anywhere(layout, own, rng), SIDE_GAP if own[2] < TALL else 0.2
-        else:
-            spots, gap = _spots_in_the_open(layout, own, rng), PASSAGE if own[2] > TALL else WALKWAY
-            if 0.6 <= own[2] <= TALL:  # a table: keep its chairs' places free as well
-                gap += CHAIR_SPACE
-        solid = _first(layout, spots, gap)
-        if solid is None and own[2] <= TALL:
-            solid = _first(layout, _spots_in_the_open(layout, own, rng), max(gap / 2, SIDE_GAP))
+        gap = PASSAGE if own[2] > TALL or kind.full_height else WALKWAY
+        spots = _spots_in_the_open(layout, space, own)
+        if small and not kind.full_height:
+            spots, gap = _spots_anywhere(layout, space, own), SIDE_GAP if own[2] < TALL else 0.2
+        elif 0.6 <= own[2] <= TALL:  # a table: keep its chairs' places free as well
+            gap += CHAIR_SPACE
+        solid = layout.first(space, spots, gap)
+        if solid is None:
+            nearer = max(gap / 2, SIDE_GAP) if own[2] <= TALL else WALKWAY
+            solid = layout.first(space, _spots_in_the_open(layout, space, own), nearer)
         if solid is None:
             layout.miss(planned.noun, "no free floor")
         else:
-            layout.put(planned, solid, _seed(rng))
+            layout.put(planned, space, solid)
 
 
-def _spread_rugs(
-    layout: Layout, planned: PlannedObject, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
-    """Centred under the named things, else under c; a rug takes nobody's place."""
-    below = [o for o in layout.objects if planned.relative_to and o.noun == planned.relative_to]
-    spots = [(o.centre[0], o.centre[1], o.yaw) for o in below] + [(*layout.centre[:2], 0.0)]
-    x, y, _ = layout.room.dimensions
+def _spread_rugs(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """Centred under the named things, else in the space's middle; a rug takes nobody's place."""
+    spots = [(o.centre[0], o.centre[1], o.yaw) for o in layout.named(planned, space)]
+    spots.append((float(space.middle[0]), float(space.middle[1]), 0.0))
     for i in range(planned.count):
+        x, y, z = _size(layout, space, planned, kind)
         u, v, yaw = spots[min(i, len(spots) - 1)]
-        solid = Solid(u, v, size[0], size[1], 0.0, size[2], yaw)
-        limit = np.array([x, y]) / 2 - solid.reach - 0.05
-        u, v = np.clip([u, v], -limit, limit)
-        layout.put(planned, Solid(float(u), float(v), size[0], size[1], 0.0, size[2], yaw), _seed(rng))
+        reach = Solid(u, v, x, y, 0.0, z, yaw).reach + 0.05
+        if (2 * reach > space.size).any():
+            layout.miss(planned.noun, "no free floor")
+            continue
+        u, v = np.clip([u, v], space.low + reach, space.high - reach)
+        layout.put(planned, space, Solid(float(u), float(v), x, y, 0.0, z, yaw))
 
 
-def _place_around(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
+def _place_around(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
     """On the sides of what it belongs to, facing it, evenly shared among all of its kind."""
-    left = planned.count
-    anchors = [o for o in layout.objects if o.noun == planned.relative_to]
-    for anchor in sorted(anchors, key=lambda o: layout.anchored.get(o.object_id, 0)):
-        share = int(np.ceil(left / max(1, len(anchors) - anchors.index(anchor))))
-        for solid in _seats(anchor, size, share, rng):
+    size, left = _size(layout, space, planned, kind), planned.count
+    anchors = layout.named(planned, space)
+    for number, anchor in enumerate(sorted(anchors, key=lambda o: layout.anchored.get(o.object_id, 0))):
+        share = int(np.ceil(left / (len(anchors) - number)))
+        for solid in _seats(anchor, size, share, layout.rng):
             if share == 0 or left == 0:
                 break
-            if layout.fits_clear(solid, TABLE_GAP * 0.9):
-                layout.put(planned, solid, _seed(rng))
+            if layout.fits_clear(space, solid, TABLE_GAP * 0.9):
+                layout.put(planned, space, solid)
                 layout.anchored[anchor.object_id] = layout.anchored.get(anchor.object_id, 0) + 1
                 share, left = share - 1, left - 1
     if left:
         layout.miss(planned.noun, f"no free place at a {planned.relative_to}", left)
 
 
-def _seats(
-    anchor: PlacedObject, size: tuple[float, float, float], wanted: int, rng: np.random.Generator
-) -> Iterator[Solid]:
+def _seats(anchor: PlacedObject, size: Size, wanted: int, rng: np.random.Generator) -> Iterator[Solid]:
     """Places round an anchor for ``wanted`` seats: its long sides first, then its ends."""
     for side in range(4):
         turn = (0, 2, 1, 3)[side] * np.pi / 2
@@ -274,28 +327,76 @@ def _seats(
         for i in range(count):
             shift = (i + 0.5) * length / count - length / 2
             distance = reach + size[1] / 2 + TABLE_GAP + 0.03 + rng.uniform(0.0, 0.08)
-            local = np.array(
-                [shift * np.cos(turn) - distance * np.sin(turn), shift * np.sin(turn) + distance * np.cos(turn)]
-            )
-            x, y = np.asarray(anchor.centre[:2]) + local @ anchor.axes
-            yaw = anchor.yaw + turn + np.pi + rng.uniform(-0.1, 0.1)
-            yield Solid(float(x), float(y), size[0], size[1], 0.0, size[2], yaw)
+            yield _near(anchor, shift, distance, turn, anchor.yaw + turn + np.pi + rng.uniform(-0.1, 0.1), size)
 
 
-def _place_on_surface(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
-    """On top of what the description names, else of anything that has a top; fullest spread first."""
+def _near(anchor: PlacedObject, shift: float, distance: float, turn: float, yaw: float, size: Size) -> Solid:
+    """A thing on the floor ``distance`` from an anchor's middle, on the side that ``turn`` turns its front to."""
+    c, s = np.cos(turn), np.sin(turn)
+    local = np.array([shift * c - distance * s, shift * s + distance * c])
+    x, y = np.asarray(anchor.centre[:2]) + local @ anchor.axes
+    return Solid(float(x), float(y), size[0], size[1], 0.0, size[2], float(yaw))
+
+
+def _place_facing(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """Turned to the named thing, at its front first, a step or two away."""
     for _ in range(planned.count):
-        own = kind.size(rng, layout.room.dimensions[2])
-        supports = [o for o in layout.objects if _top_share(o) > 0 and planned.relative_to in ("", o.noun)]
-        supports.sort(
-            key=lambda o: sum(1 for p in layout.objects if p.support == o.object_id) / (o.size[0] * o.size[1])
-        )
-        for support in supports:
-            solid = next((s for s in _spots_on(support, own, rng) if layout.fits(s, TABLE_GAP)), None)
+        size, anchors = _size(layout, space, planned, kind), layout.named(planned, space)
+        spots = (s for a in anchors for s in _opposite(a, size, layout.rng))
+        solid = layout.first(space, spots, SIDE_GAP)
+        if solid is None:
+            layout.miss(planned.noun, f"no free place before a {planned.relative_to}")
+        else:
+            layout.put(planned, space, solid)
+
+
+def _opposite(anchor: PlacedObject, size: Size, rng: np.random.Generator) -> Iterator[Solid]:
+    for n in range(TRIES // 4):
+        turn = (0.0, np.pi / 2, -np.pi / 2, np.pi)[min(n // 24, 3)] + rng.uniform(-0.35, 0.35)
+        distance = max(anchor.size[:2]) / 2 + size[1] / 2 + rng.uniform(0.5, 2.4)
+        yield _near(anchor, 0.0, distance, turn, anchor.yaw + turn + np.pi, size)
+
+
+def _place_beside(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """Next to the named thing, looking the way it does."""
+    for _ in range(planned.count):
+        size, anchors = _size(layout, space, planned, kind), layout.named(planned, space)
+        spots = (s for a in anchors for s in _next_to(a, size, layout.rng))
+        solid = layout.first(space, spots, 0.02)
+        if solid is None:
+            layout.miss(planned.noun, f"no free place beside a {planned.relative_to}")
+        else:
+            layout.put(planned, space, solid)
+
+
+def _next_to(anchor: PlacedObject, size: Size, rng: np.random.Generator) -> Iterator[Solid]:
+    """At its right or left, backs in line; then anywhere close round it."""
+    axes, middle = anchor.axes, np.asarray(anchor.centre[:2])
+    for n in range(TRIES // 4):
+        side = (-1, 1)[int(rng.integers(2))]
+        right = side * (anchor.size[0] / 2 + size[0] / 2 + rng.uniform(0.06, 0.25 + 0.02 * n))
+        back = (size[1] - anchor.size[1]) / 2
+        if n > TRIES // 8:
+            right, back = (
+                rng.uniform(-1, 1) * anchor.size[0] / 2,
+                anchor.size[1] / 2 + size[1] / 2 + rng.uniform(0.1, 0.5),
+            )
+        x, y = middle + np.array([right, back]) @ axes
+        yield Solid(float(x), float(y), size[0], size[1], 0.0, size[2], anchor.yaw)
+
+
+def _place_on_surface(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """On top of what the description names, else of anything that has a top; emptiest first."""
+    for _ in range(planned.count):
+        own = _size(layout, space, planned, kind)
+        supports = [o for o in layout.objects if _top_share(o) > 0 and o.zone == space.zone.name]
+        supports = [o for o in supports if planned.relative_to in ("", o.noun)]
+        carried = {o.object_id: sum(p.support == o.object_id for p in layout.objects) for o in supports}
+        for support in sorted(supports, key=lambda o: carried[o.object_id] / (o.size[0] * o.size[1])):
+            spots = _spots_on(support, own, layout.rng)
+            solid = next((s for s in spots if layout.fits(space, s, TABLE_GAP)), None)
             if solid is not None:
-                layout.put(planned, solid, _seed(rng), support.object_id)
+                layout.put(planned, space, solid, support.object_id)
                 break
         else:
             layout.miss(planned.noun, f"no free place on a {planned.relative_to or 'surface'}")
@@ -305,62 +406,76 @@ def _top_share(placed: PlacedObject) -> float:
     return kind_of(placed.noun).top
 
 
-def _spots_on(support: PlacedObject, size: tuple[float, float, float], rng: np.random.Generator) -> Iterator[Solid]:
-    """On the support, facing its front; things stand back from it, out of the way."""
-    room = np.asarray(support.size[:2]) - size[:2] - 0.04
-    if (room < 0).any():
+def _spots_on(support: PlacedObject, size: Size, rng: np.random.Generator) -> Iterator[Solid]:
+    """On the support, facing its front."""
+    free = np.asarray(support.size[:2]) - size[:2] - 0.04
+    if (free < 0).any():
         return
     base = support.bottom + support.size[2] * _top_share(support)
     for _ in range(TRIES // 4):
-        local = rng.uniform(-0.5, 0.5, 2) * room
+        local = rng.uniform(-0.5, 0.5, 2) * free
         x, y = np.asarray(support.centre[:2]) + local @ support.axes
         yield Solid(float(x), float(y), size[0], size[1], base, base + size[2], support.yaw)
 
 
-def _place_on_wall(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
+def _place_on_wall(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """Fixed to a wall at about the height of eyes, big things lower, never over an opening."""
     for _ in range(planned.count):
-        x, y, z = kind.size(rng, layout.room.dimensions[2])
+        size = _size(layout, space, planned, kind)
         for _ in range(TRIES):
-            bottom = float(np.clip(rng.normal(1.62, 0.12) - z / 2, 0.9, layout.room.dimensions[2] - z - 0.2))
-            solid = next(_spots_along_walls(layout.room, x, y, bottom, z, rng))
-            front = solid.shifted(0.0, FRONT_OF_PICTURE / 2, x, y + FRONT_OF_PICTURE)
-            if layout.fits_clear(solid, PICTURE_GAP) and not layout.occupied.hits(front, 0.0):
-                back = solid.shifted(0.0, -WALL_GAP, x, y)  # flat on the wall
-                layout.put(planned, back, _seed(rng))
+            middle = layout.rng.normal(1.62, 0.15 if space.height < 4 else 0.4)
+            bottom = float(np.clip(middle - size[2] / 2, 0.9, max(space.height - size[2] - 0.2, 0.9)))
+            solid = next(_spots_along_walls(layout, space, size, bottom), None)
+            if solid is None:
+                break
+            front = solid.shifted(0.0, FRONT_OF_PICTURE / 2, size[0], size[1] + FRONT_OF_PICTURE)
+            if layout.fits_clear(space, solid, PICTURE_GAP) and not layout.occupied.hits(front, 0.0):
+                layout.put(planned, space, solid.shifted(0.0, -WALL_GAP, size[0], size[1]))  # flat on the wall
                 break
         else:
+            solid = None
+        if solid is None:
             layout.miss(planned.noun, "no free stretch of wall")
 
 
-def _place_hanging(
-    layout: Layout, planned: PlannedObject, kind: Kind, size: tuple[float, float, float], rng: np.random.Generator
-) -> None:
-    """From the ceiling; over the things that are named, or spread over the room."""
-    x, y, height = layout.room.dimensions
-    own = (size[0], size[1], min(size[2], height - LOW_HANGING)) if size[2] > 0.2 else size
-    over = [o for o in layout.objects if planned.relative_to and o.noun == planned.relative_to]
+def _place_hanging(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:
+    """From the ceiling, a rod or a cable; over the things that are named, or spread over the space."""
+    over = layout.named(planned, space)
     for number in range(planned.count):
+        size = _size(layout, space, planned, kind)
         spots = [np.asarray(o.centre[:2]) for o in over[number:]]
-        spots += [rng.uniform(-0.42, 0.42, 2) * (x, y) for _ in range(TRIES)]
-        solids = (Solid(float(s[0]), float(s[1]), own[0], own[1], height - own[2], height, 0.0) for s in spots)
-        solid = _first(layout, solids, 0.3)
+        spots += [space.middle + layout.rng.uniform(-0.44, 0.44, 2) * space.size for _ in range(TRIES)]
+        solids = (s for spot in spots for s in _hung(space, spot, size, layout.rng))
+        solid = layout.first(space, solids, 0.25)
         if solid is None:
             layout.miss(planned.noun, "no free ceiling")
         else:
-            layout.put(planned, solid, _seed(rng))
+            layout.put(planned, space, solid)
+
+
+def _hung(space: Space, spot: NDArray[np.float64], size: Size, rng: np.random.Generator) -> Iterator[Solid]:
+    """At the ceiling, or lower where that is high."""
+    ceiling = (
+        max(space.height, 4.0) if space.open_air else ceiling_at(space, spot) - 0.01 * (space.zone.kind == "tunnel")
+    )
+    z = min(size[2], ceiling - LOW_HANGING) if size[2] > 0.2 else size[2]
+    if z < 0.5 * size[2]:
+        return
+    lowest = float(rng.uniform(*HANGING_AT))
+    top = ceiling if ceiling - z < lowest or (size[2] <= 0.2 and not space.open_air) else lowest + z
+    yaw = 0.0 if space.size[0] >= space.size[1] else np.pi / 2
+    yield Solid(float(spot[0]), float(spot[1]), size[0], size[1], top - z, top, yaw)
 
 
 PLACERS = {
     "against_wall": _place_against_wall,
     "in_row": _place_in_row,
     "on_floor": _place_on_floor,
-    "facing": _place_on_floor,
-    "beside": _place_on_floor,
     "around": _place_around,
+    "facing": _place_facing,
+    "beside": _place_beside,
     "on_surface": _place_on_surface,
     "on_wall": _place_on_wall,
     "hanging": _place_hanging,
 }
-"""In the order in which a room is furnished."""
+"""In the order in which a place is furnished."""

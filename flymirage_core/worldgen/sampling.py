@@ -1,78 +1,97 @@
-"""From a furnished room to Gaussians: every surface cut into surfels, lit, and made flat, opaque splats."""
+"""From an assembled world to Gaussians: surfaces cut into surfels, lit, and made flat splats; and the sky's dome."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from flymirage_core.scene.description import SceneDescription
 from flymirage_core.splats.cloud import GaussianCloud
-from flymirage_core.worldgen.catalogue import kind_of
-from flymirage_core.worldgen.lighting import DAYLIGHT, LAMP_BOOST, LAMPLIGHT, WINDOW_RADIANCE, Lights, lit_colours
-from flymirage_core.worldgen.materials import material_named
-from flymirage_core.worldgen.parts import Finish, paint
-from flymirage_core.worldgen.room import SKIRTING, Room, fixtures, shell
-from flymirage_core.worldgen.surfaces import Part, Surfels, surfels_of, upright
-from flymirage_core.worldgen.truth import PlacedObject, WorldTruth
+from flymirage_core.worldgen.assembly import Assembly, Thing
+from flymirage_core.worldgen.lighting import BakedLight, bake
+from flymirage_core.worldgen.meshes import TexturedMesh, corners_of, textured_mesh
+from flymirage_core.worldgen.outdoors import BEYOND
+from flymirage_core.worldgen.place import Place
+from flymirage_core.worldgen.rays import RayCaster
+from flymirage_core.worldgen.sky import Sky
+from flymirage_core.worldgen.surfaces import Leaves, Part, Surfels, surfels_of
+from flymirage_core.worldgen.windows import illumination_of
 
-OVERLAP = 0.72
-"""A splat's standard deviation as a share of its surfel's side: four neighbours leave 1 % of the light at a corner."""
-THICKNESS = 0.002
+Float = NDArray[np.float64]
+
+OVERLAP: Final = 0.66
+"""A splat's standard deviation as a share of its surfel's side: the least that leaves no pinholes at corners."""
+THICKNESS: Final = 0.002
 """Standard deviation along the normal, metres."""
-OPACITY = 0.99
-SH_C0 = 0.28209479177387814
+OPACITY, LEAF_OPACITY = 0.99, 0.93
+SH_C0: Final = 0.28209479177387814
 """Real spherical harmonic of degree 0: colour = 0.5 + SH_C0 * coefficient."""
-FIRST_SPACING = 0.07
-"""Metres, of the trial cut that tells how many surfels a spacing gives."""
-SMALL_OBJECT = 1.1
-"""Metres; objects smaller than this are cut finer, down to `FINEST` of the spacing."""
-FINEST = 0.45
-COVER_GAP, COVER_REACH, NEIGHBOURS = 0.016, 0.05, 14
-"""Metres before a surfel within which another hides it, how far off that one's middle may be, how many are asked."""
-FLAT = 0.1
-"""Metres; what hangs on a wall and is no deeper hides the wall behind it."""
-HIDDEN = 0.05
-"""Metres: faces this close to the wall or floor they look at cannot be seen."""
-SECOND = {"wood": "walnut brown", "metal": "charcoal", "fabric": "chocolate", "plain": "charcoal", "stone": "charcoal"}
-LAMP_POWER = 0.05
-"""Objects that glow less (emission times square metres) light nothing: screens, small signs."""
+TRIAL_SPACING: Final = 0.2
+"""Metres, of a coarse cut that tells how many surfels a spacing gives, and how many of them are hidden."""
+SMALL: Final = 1.1
+"""Metres; things smaller than this are cut finer, down to `FINEST` of the spacing."""
+FINEST: Final = 0.45
+FLOWN: Final = np.array([13.0, 13.0, 3.2])
+"""Metres from c: drones rarely fly further; what lies beyond is cut coarser, by `COARSER` for each metre."""
+COARSER: Final = 0.11
+COARSEST: Final = 6.0
+COVER: Final = 0.045
+"""Metres: what has a surface this close before it cannot be seen."""
+FLUSH: Final = 0.02
+"""Metres."""
+DOME_SPLATS: Final = 5200
+SKY_SIDES: Final = 1.45
+"""Side of a sky splat as a share of what would just tile the dome."""
 
 
-def gaussians(description: SceneDescription, room: Room, truth: WorldTruth, count: int) -> GaussianCloud:
-    """About ``count`` flat Gaussians of the lit room, world frame."""
-    empty = EmptyRoom(shell(room, description), fixtures(room, description))
-    objects = [(o, object_parts(o)) for o in truth.objects]
-    spacing = FIRST_SPACING
-    for _ in range(2):  # the edges' extra surfels make the count fall slower than the area over spacing^2
-        found = sum(len(s) for s in _cut(empty, objects, spacing))
-        spacing *= float(np.sqrt(found / count))
-    pieces = _cut(empty, objects, spacing)
-    lights = _lights(room, pieces[2:])
-    pieces[0] = pieces[0][_uncovered(pieces[0], room, truth)]
-    surfels = Surfels.joined(pieces)
-    return splats(surfels, lit_colours(surfels, lights, room.dimensions))
+@dataclass(frozen=True, eq=False)
+class LitWorld:
+    """A world cut and lit; the mesh and the light answer for any other spot of it as well."""
+
+    cloud: GaussianCloud
+    mesh: TexturedMesh
+    light: BakedLight
+    sky: Sky | None
 
 
-def object_parts(placed: PlacedObject) -> list[Part]:
-    """The parts of one placed object, in its own frame."""
-    main = material_named(placed.material, placed.colour, placed.seed % 9973)
-    accent = paint(
-        SECOND.get(main.texture, "charcoal"),
-        "wood" if main.texture in ("wood", "fabric") else "metal",
-        seed=placed.seed % 997,
-    )
-    return kind_of(placed.noun).build(placed.size, Finish(main, accent, placed.seed))
+def lit_world(assembly: Assembly, count: int) -> LitWorld:
+    """About ``count`` Gaussians of the assembled world, world frame."""
+    mesh = textured_mesh(assembly.parts)
+    opaque = mesh.opacity(np.arange(len(mesh.faces))) > 0.5
+    solid = RayCaster(mesh.vertices[mesh.faces[opaque]])
+    factors = [[_coarseness(p, t, assembly) for p in t.parts] for t in assembly.things]
+    cut = _cut(assembly.things, factors, _spacing_for(assembly, mesh, solid, factors, count))
+    pieces = [Surfels.joined(own) for own in cut]
+    illumination, lamps = illumination_of(assembly, pieces)
+    surfels, leaf = Surfels.joined(pieces), _leaves(assembly, cut)
+    is_lamp = np.repeat(np.array(lamps, bool), [len(p) for p in pieces])
+    light = bake(surfels, is_lamp, mesh, illumination)
+    seen = _seen(surfels, leaf, solid, assembly.place)
+    surfels, leaf = surfels[seen], leaf[seen]
+    glow = surfels.emission[:, None] * light_unit(light)
+    radiance = surfels.albedo * (light.irradiance(surfels.points, surfels.normals) / np.pi + glow)
+    cloud = splats(surfels, light.seen(radiance), np.where(leaf, LEAF_OPACITY, OPACITY))
+    if illumination.sky is not None:
+        cloud = _joined(cloud, dome(illumination.sky, light))
+    return LitWorld(cloud, mesh, light, illumination.sky)
 
 
-def splats(surfels: Surfels, colours: NDArray[np.float64]) -> GaussianCloud:
+def light_unit(light: BakedLight) -> float:
+    """Radiance of an emission of 1 on white.
+
+    Lamps and screens are as bright on the picture in any light: a film would be exposed for them. In the open air the
+    sky's own unit holds.
+    """
+    return 1.0 if light.illumination.sky is not None else 1.0 / light.exposure
+
+
+def splats(surfels: Surfels, colours: Float, opacity: Float) -> GaussianCloud:
     """Flat Gaussians of surfels and their sRGB colours (N, 3) in [0, 1]."""
     long = np.linalg.norm(surfels.along, axis=1)
     wide = np.linalg.norm(surfels.across, axis=1)
     x = surfels.along / np.maximum(long, 1e-12)[:, None]
-    z = surfels.normals
-    y = np.cross(z, x)
+    y = np.cross(surfels.normals, x)
     y /= np.maximum(np.linalg.norm(y, axis=1, keepdims=True), 1e-12)
     quaternions = Rotation.from_matrix(np.stack([x, y, np.cross(x, y)], axis=2)).as_quat()  # (N, 4) xyzw
     scales = np.stack([OVERLAP * long, OVERLAP * wide, np.full(len(long), THICKNESS)], 1)  # (N, 3)
@@ -80,116 +99,97 @@ def splats(surfels: Surfels, colours: NDArray[np.float64]) -> GaussianCloud:
         surfels.points.astype(np.float32),
         quaternions.astype(np.float32),
         np.maximum(scales, 5e-4).astype(np.float32),
-        (OPACITY * surfels.opacity).astype(np.float32),
+        (opacity * surfels.opacity).astype(np.float32),
         ((colours - 0.5) / SH_C0).astype(np.float32)[:, None, :],
     )
 
 
-@dataclass(frozen=True, eq=False)
-class EmptyRoom:
-    """The parts of the room before anything is in it, world coordinates."""
-
-    structure: list[Part]
-    fixtures: list[list[Part]]
-
-
-def _cut(empty: EmptyRoom, objects: list[tuple[PlacedObject, list[Part]]], spacing: float) -> list[Surfels]:
-    """Surfels of the room itself, of its fixtures, then of each object, in world coordinates."""
-    pieces = [Surfels.joined([surfels_of(p, spacing) for p in empty.structure])]
-    pieces.append(Surfels.joined([_visible(parts, spacing) for parts in empty.fixtures]))
-    for placed, parts in objects:
-        fine = spacing * float(np.clip(np.sqrt(max(placed.size) / SMALL_OBJECT), FINEST, 1.0))
-        own = _visible(parts, fine)
-        own = own[~_hidden(own, placed)]
-        pieces.append(own.moved(upright(placed.yaw), (*placed.centre[:2], placed.bottom)))
-    return pieces
+def dome(sky: Sky, light: BakedLight) -> GaussianCloud:
+    """The sky as large flat splats on a sphere of `BEYOND` metres round the origin, facing it; a bit below it too."""
+    i = np.arange(2 * DOME_SPLATS) + 0.5
+    z = 1 - i / DOME_SPLATS
+    angle = np.pi * (1 + 5**0.5) * i
+    flat = np.sqrt(1 - z * z)
+    directions = np.stack([flat * np.cos(angle), flat * np.sin(angle), z], axis=1)
+    directions = directions[z > -0.35]
+    side = SKY_SIDES * BEYOND * np.sqrt(2 * np.pi / DOME_SPLATS)
+    a = np.cross(np.where(np.abs(directions[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]]), directions)
+    a *= side / np.linalg.norm(a, axis=1, keepdims=True)
+    b = np.cross(directions, a)
+    n = len(directions)
+    blank = np.zeros((n, 3))
+    surfels = Surfels(BEYOND * directions, a, b, -directions, blank, np.zeros(n), np.ones(n))
+    return splats(surfels, light.seen(sky.radiance(directions)), np.full(n, OPACITY))
 
 
-def _visible(parts: list[Part], spacing: float) -> Surfels:
-    """The surfels of one thing's parts, less those that its other parts cover."""
-    cut = [surfels_of(p, spacing) for p in parts]
-    own = Surfels.joined(cut)
-    return own[~_covered(own, np.repeat(np.arange(len(cut)), [len(c) for c in cut]))]
+def _joined(one: GaussianCloud, other: GaussianCloud) -> GaussianCloud:
+    names = ("means", "quaternions", "scales", "opacities", "sh")
+    return GaussianCloud(*(np.concatenate([getattr(one, name), getattr(other, name)]) for name in names))
 
 
-def _hidden(own: Surfels, placed: PlacedObject) -> NDArray[np.bool_]:
-    """(N,) undersides of what stands, and backs of what hangs on a wall or stands at one."""
-    hidden = np.zeros(len(own), bool)
-    if placed.placement not in ("on_wall", "hanging"):
-        hidden |= (own.normals[:, 2] < -0.9) & (own.points[:, 2] < HIDDEN)
-    if placed.placement in ("on_wall", "against_wall"):
-        hidden |= (own.normals[:, 1] < -0.9) & (own.points[:, 1] < -placed.size[1] / 2 + HIDDEN / 2)
-    return hidden
+def _spacing_for(
+    assembly: Assembly, mesh: TexturedMesh, solid: RayCaster, factors: list[list[float]], count: int
+) -> float:
+    """Metres between surfels that give about ``count``: share (a / s^2 + b / s), by the areas and one coarse cut."""
+    triangles = mesh.vertices[mesh.faces]
+    areas = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1) / 2
+    parts = assembly.parts
+    coarse = np.array([f for own in factors for f in own]) * [p.material.detail for p in parts]
+    a = float((np.bincount(mesh.face_part, areas, len(parts)) / coarse**2).sum())
+    cut = _cut(assembly.things, factors, TRIAL_SPACING)
+    surfels = Surfels.joined([piece for own in cut for piece in own])
+    share = float(_seen(surfels, _leaves(assembly, cut), solid, assembly.place).mean())
+    b = max(len(surfels) * TRIAL_SPACING - a / TRIAL_SPACING, 0.0)
+    return float(2 * a / (-b + np.sqrt(b * b + 4 * a * count / share)))
 
 
-def _covered(own: Surfels, part: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """(N,) surfels that another part's surfel hides, lying flat before them: they would shine through at a slant."""
-    tree = cKDTree(own.points)
-    _, near = tree.query(own.points, k=NEIGHBOURS, distance_upper_bound=COVER_REACH)  # (N, K); N where there is none
-    covered = np.zeros(len(own), bool)
-    lengths = np.linalg.norm(own.along, axis=1), np.linalg.norm(own.across, axis=1)
-    for column in np.asarray(near).T[1:]:
-        i = np.flatnonzero((column < len(own)) & ~covered)
-        j = column[i]
-        i, j = i[part[i] != part[j]], j[part[i] != part[j]]
-        step = own.points[j] - own.points[i]
-        ahead = (step * own.normals[i]).sum(axis=1)
-        hides = (ahead > 1e-4) & (ahead < COVER_GAP) & ((own.normals[i] * own.normals[j]).sum(axis=1) > 0.9)
-        for edge, length in ((own.along, lengths[0]), (own.across, lengths[1])):
-            hides &= np.abs((step * edge[j]).sum(axis=1)) <= 0.55 * length[j] ** 2
-        covered[i[hides]] = True
-    return covered
+def _leaves(assembly: Assembly, cut: list[list[Surfels]]) -> NDArray[np.bool_]:
+    """(N,) which surfels are leaves."""
+    flags = [isinstance(p.surface, Leaves) for p in assembly.parts]
+    return np.repeat(np.array(flags, bool), [len(piece) for own in cut for piece in own])
 
 
-def _uncovered(structure: Surfels, room: Room, truth: WorldTruth) -> NDArray[np.bool_]:
-    """(N,) False for what windows, doors, pictures, rugs and skirting cover.
+def _cut(things: list[Thing], factors: list[list[float]], spacing: float) -> list[list[Surfels]]:
+    """The surfels of each part of each thing."""
+    return [
+        [surfels_of(p, spacing * f) for p, f in zip(t.parts, own, strict=True)]
+        for t, own in zip(things, factors, strict=True)
+    ]
 
-    Large splats that are nearly in one plane are not sorted reliably: the covered ones would shine through at a slant.
+
+def _coarseness(part: Part, thing: Thing, assembly: Assembly) -> float:
+    """Factor on the spacing of a part: small things finer, far ones coarser."""
+    corners = corners_of(part)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    off = np.maximum(np.maximum(low - assembly.truth.centre - FLOWN, assembly.truth.centre - FLOWN - high), 0.0)
+    off[2] = max(low[2] - FLOWN[2] - 0.8, -1.0 - high[2], 0.0)
+    far = min(1 + COARSER * float(np.linalg.norm(off)), COARSEST)
+    if thing.object_id < 0:
+        return far
+    size = max(assembly.truth.objects[thing.object_id].size)
+    return far * float(np.clip(np.sqrt(size / SMALL), FINEST, 1.0))
+
+
+def _seen(surfels: Surfels, leaf: NDArray[np.bool_], solid: RayCaster, place: Place) -> NDArray[np.bool_]:
+    """(N,) surfels that a camera in the place could see. Leaves cover each other and are seen from both sides."""
+    return (leaf | ~_covered(surfels, solid)) & ~_outward(surfels, place)
+
+
+def _outward(surfels: Surfels, place: Place) -> NDArray[np.bool_]:
+    """(N,) surfels on a space's bounds that look out of it: backs and undersides flush with walls and floor."""
+    inside, still = np.zeros(len(surfels), bool), np.zeros(len(surfels), bool)
+    ahead = surfels.points + FLUSH * surfels.normals
+    for space in place.spaces:
+        low = np.array([*space.low, 0.0])
+        high = np.array([*space.high, np.inf if space.open_air else space.height])
+        inside |= ((surfels.points > low - FLUSH / 8) & (surfels.points < high + FLUSH / 8)).all(axis=1)
+        still |= ((ahead > low - FLUSH / 2) & (ahead < high + FLUSH / 2)).all(axis=1)
+    return np.asarray(inside & ~still)
+
+
+def _covered(surfels: Surfels, solid: RayCaster) -> NDArray[np.bool_]:
+    """(N,) surfels that something lies right before of: they would only shine through at a slant.
+
+    Undersides of what stands, backs of what hangs, walls behind skirting, floors under rugs.
     """
-    seen = np.ones(len(structure), bool)
-    for opening in (*room.windows, *room.doors):
-        wall = room.walls[opening.wall]
-        local = structure.points[:, :2] - wall.origin
-        along, height = local @ wall.along, structure.points[:, 2]
-        behind = (local @ wall.inward < 1e-3) & (along > opening.left + 0.04) & (along < opening.right - 0.04)
-        seen &= ~(
-            behind & (height > opening.bottom + (0.04 if opening.bottom else -1.0)) & (height < opening.top - 0.04)
-        )
-    for flat in (
-        o for o in truth.objects if o.placement == "on_wall" and o.size[1] < FLAT and not kind_of(o.noun).square
-    ):
-        local = (structure.points - flat.centre) @ upright(flat.yaw)
-        seen &= ~(np.abs(local) < np.array(flat.size) / 2 + [-0.02, 0.05, -0.02]).all(axis=1)
-    seen &= ~((structure.points[:, 2] < SKIRTING) & _on_a_wall(structure.points, room))
-    for rug in (o for o in truth.objects if kind_of(o.noun).flat):
-        local = (structure.points[:, :2] - rug.centre[:2]) @ rug.axes.T
-        below = (np.abs(local) < np.array(rug.size[:2]) / 2 - 0.01).all(axis=1)
-        seen &= ~(below & (structure.points[:, 2] < 1e-3))
-    return seen
-
-
-def _on_a_wall(points: NDArray[np.float64], room: Room) -> NDArray[np.bool_]:
-    x, y, _ = room.dimensions
-    return np.asarray(np.minimum(x / 2 - np.abs(points[:, 0]), y / 2 - np.abs(points[:, 1])) < 1e-3)
-
-
-def _lights(room: Room, objects: list[Surfels]) -> Lights:
-    """Windows as four patches of sky each, and every object that glows enough as a lamp at its glow's middle."""
-    positions, normals, powers = [], [], []
-    for w in room.windows:
-        wall = room.walls[w.wall]
-        area = (w.right - w.left) * (w.top - w.bottom)
-        for a in (0.25, 0.75):
-            for b in (0.25, 0.75):
-                spot = wall.at(w.left + a * (w.right - w.left), 0.1)
-                positions.append([*spot, w.bottom + b * (w.top - w.bottom)])
-                normals.append([*wall.inward, 0.0])
-                powers.append(DAYLIGHT * WINDOW_RADIANCE * area / 4)
-    for own in objects:
-        glow = own.emission * own.areas
-        if glow.sum() > LAMP_POWER:
-            middle = (own.points * glow[:, None]).sum(axis=0) / glow.sum()
-            positions.append(list(middle - [0.0, 0.0, 0.08]))
-            normals.append([0.0, 0.0, 0.0])
-            powers.append(LAMPLIGHT * LAMP_BOOST * glow.sum() / np.pi)
-    return Lights(np.array(positions).reshape(-1, 3), np.array(normals).reshape(-1, 3), np.array(powers).reshape(-1, 3))
+    return solid.occluded(surfels.points + 1e-3 * surfels.normals, surfels.normals, np.full(len(surfels), COVER))

@@ -20,7 +20,8 @@ from flymirage_core.scene.writer import OfflineSceneWriter
 from flymirage_core.settings import Settings
 from flymirage_core.splats.imports import import_world
 from flymirage_core.splats.world import World
-from flymirage_core.worldgen.model import OfflineWorldModel, build_truth
+from flymirage_core.worldgen.assembly import build_truth
+from flymirage_core.worldgen.model import OfflineWorldModel
 
 SETTINGS = Settings()
 DATA = Path(os.environ.get("FLYMIRAGE_TEST_DATA", Path(__file__).parents[3] / "shared" / "data"))
