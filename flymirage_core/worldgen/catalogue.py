@@ -9,9 +9,11 @@ from flymirage_core.worldgen import shapes_industrial as industrial
 from flymirage_core.worldgen import shapes_plants as plants
 from flymirage_core.worldgen import shapes_power as power
 from flymirage_core.worldgen import shapes_street as street
+from flymirage_core.worldgen import shapes_tabletop as tabletop
 from flymirage_core.worldgen import shapes_utility as utility
 from flymirage_core.worldgen import shapes_vehicles as vehicles
 from flymirage_core.worldgen import shapes_venue as venue
+from flymirage_core.worldgen import shapes_wall as wall
 from flymirage_core.worldgen.kinds import Builder, Kind, kind, round_kind
 
 
@@ -290,6 +292,65 @@ KINDS: dict[str, Kind] = {
     "drip stand": round_kind(venue.drip_stand, (0.5, 0.58), (1.8, 2.0), ("silver", "stainless steel")),
     "privacy screen": kind(venue.privacy_screen, (1.5, 1.7), (0.3, 0.36), (1.7, 1.8), ("mint", "cotton")),
     "telescope": kind(venue.telescope, (0.8, 0.95), (0.95, 1.1), (1.4, 1.6), ("brass", "brushed brass")),
+    # small things
+    "desk lamp": kind(tabletop.desk_lamp, (0.18, 0.22), (0.32, 0.38), (0.44, 0.54), ("teal", "painted steel")),
+    "keyboard": kind(tabletop.keyboard, (0.42, 0.46), (0.14, 0.16), (0.026, 0.032), ("charcoal", "plastic")),
+    "telephone": kind(tabletop.telephone, (0.22, 0.25), (0.18, 0.21), (0.13, 0.15), ("red", "plastic")),
+    "radio": kind(tabletop.radio, (0.3, 0.36), (0.13, 0.16), (0.3, 0.36), ("walnut brown", "walnut")),
+    "record player": kind(tabletop.record_player, (0.4, 0.45), (0.4, 0.46), (0.36, 0.42), ("walnut brown", "walnut")),
+    "typewriter": kind(tabletop.typewriter, (0.36, 0.42), (0.34, 0.38), (0.3, 0.36), ("teal", "painted steel")),
+    "toaster": kind(tabletop.toaster, (0.28, 0.32), (0.17, 0.2), (0.22, 0.25), ("silver", "stainless steel")),
+    "coffee machine": kind(tabletop.coffee_machine, (0.3, 0.36), (0.36, 0.42), (0.44, 0.5), ("red", "painted steel")),
+    "teapot": kind(tabletop.teapot, (0.24, 0.28), (0.16, 0.18), (0.17, 0.2), ("teal", "ceramic")),
+    "mug": kind(tabletop.mug, (0.11, 0.13), (0.08, 0.09), (0.09, 0.11), ("rust", "ceramic")),
+    "plate stack": round_kind(tabletop.plate_stack, (0.25, 0.28), (0.12, 0.15), ("white", "porcelain")),
+    "jar": round_kind(tabletop.jar, (0.13, 0.16), (0.2, 0.26), ("cream", "ceramic")),
+    "picture frame": kind(tabletop.picture_frame, (0.18, 0.26), (0.12, 0.15), (0.24, 0.32), ("brass", "brass")),
+    "tray": kind(tabletop.tray, (0.4, 0.46), (0.28, 0.32), (0.06, 0.07), ("oak brown", "oak")),
+    "cake stand": round_kind(tabletop.cake_stand, (0.28, 0.32), (0.2, 0.24), ("white", "porcelain")),
+    "bread basket": kind(tabletop.bread_basket, (0.36, 0.42), (0.26, 0.32), (0.14, 0.18), ("tan", "wicker")),
+    "cash register": kind(tabletop.cash_register, (0.36, 0.42), (0.36, 0.42), (0.3, 0.36), ("slate grey", "plastic")),
+    "weighing scale": kind(tabletop.weighing_scale, (0.3, 0.36), (0.3, 0.36), (0.3, 0.36), ("mint", "enamel")),
+    "microscope": kind(tabletop.microscope, (0.2, 0.23), (0.24, 0.28), (0.38, 0.44), ("white", "painted steel")),
+    "flask": round_kind(tabletop.flask, (0.14, 0.18), (0.22, 0.28), ("powder blue", "glass")),
+    "sewing machine": kind(tabletop.sewing_machine, (0.4, 0.46), (0.19, 0.22), (0.32, 0.36), ("black", "painted steel")),
+    "vice": kind(tabletop.vice, (0.24, 0.28), (0.3, 0.36), (0.2, 0.25), ("blue", "cast iron")),
+    "bust": kind(tabletop.bust, (0.26, 0.32), (0.18, 0.22), (0.42, 0.5), ("chalk", "marble")),
+    "toy car": kind(tabletop.toy_car, (0.26, 0.32), (0.13, 0.15), (0.11, 0.13), ("red", "plastic")),
+    "dollhouse": kind(tabletop.dollhouse, (0.56, 0.66), (0.34, 0.4), (0.58, 0.66), ("blush", "painted wood")),
+    "trophy": kind(tabletop.trophy, (0.18, 0.22), (0.13, 0.16), (0.32, 0.38), ("brass", "brushed brass")),
+    "potted orchid": kind(tabletop.potted_orchid, (0.24, 0.3), (0.22, 0.26), (0.42, 0.52), ("white", "ceramic")),
+    "fan": kind(tabletop.fan, (0.3, 0.34), (0.2, 0.24), (0.42, 0.48), ("mint", "painted steel")),
+    # on walls, inside and out
+    "blackboard": kind(wall.blackboard, (1.9, 2.6), (0.08, 0.1), (1.1, 1.3), ("charcoal", "painted wood")),
+    "whiteboard": kind(wall.whiteboard, (1.6, 2.0), (0.08, 0.1), (1.0, 1.2), ("white", "enamel")),
+    "projection screen": kind(wall.projection_screen, (2.0, 2.4), (0.1, 0.12), (1.4, 1.7), ("white", "canvas")),
+    "curtain": kind(wall.curtain, (1.3, 1.7), (0.16, 0.2), (2.1, 2.4), ("rust", "linen")),
+    "tapestry": kind(wall.tapestry, (1.3, 1.7), (0.03, 0.05), (1.6, 2.0), ("burgundy", "wool")),
+    "towel rail": kind(wall.towel_rail, (0.55, 0.65), (0.1, 0.13), (0.85, 1.0), ("silver", "stainless steel")),
+    "cooker hood": kind(wall.cooker_hood, (0.65, 0.9), (0.46, 0.52), (0.65, 0.8), ("silver", "stainless steel")),
+    "dartboard": replace(kind(wall.dartboard, (0.44, 0.48), (0.13, 0.15), (0.44, 0.48)), square=True),
+    "basketball hoop": kind(wall.basketball_hoop, (1.15, 1.3), (0.7, 0.85), (1.05, 1.15), ("red", "plastic")),
+    "shop sign": kind(wall.shop_sign, (1.6, 2.2), (0.2, 0.26), (0.6, 0.7), ("forest green", "painted wood")),
+    "neon sign": kind(wall.neon_sign, (1.0, 1.4), (0.1, 0.13), (0.45, 0.55), ("pink", "glass")),
+    "awning": kind(wall.awning, (2.0, 2.8), (1.0, 1.3), (0.8, 1.0), ("burgundy", "canvas")),
+    "warning sign": kind(wall.warning_sign, (0.4, 0.5), (0.025, 0.03), (0.4, 0.5), ("yellow", "enamel")),
+    "emergency light": kind(wall.emergency_light, (0.34, 0.4), (0.11, 0.13), (0.19, 0.22), ("white", "plastic")),
+    "security camera": kind(wall.security_camera, (0.12, 0.16), (0.32, 0.38), (0.2, 0.24), ("white", "aluminium")),
+    "loudspeaker": kind(wall.loudspeaker, (0.36, 0.42), (0.3, 0.36), (0.46, 0.54), ("light grey", "plastic")),
+    "ventilation fan": kind(wall.ventilation_fan, (0.8, 1.0), (0.28, 0.34), (0.8, 1.0), ("light grey", "steel")),
+    "ventilation grille": kind(wall.ventilation_grille, (0.7, 0.95), (0.05, 0.07), (0.45, 0.55), ("light grey", "steel")),
+    "hose reel": kind(wall.hose_reel, (0.66, 0.76), (0.28, 0.33), (0.66, 0.76), ("red", "enamel")),
+    "pipe run": kind(wall.pipe_run, (2.2, 3.2), (0.22, 0.26), (0.45, 0.55), ("light grey", "galvanised steel")),
+    "valve wheel": kind(wall.valve_wheel, (0.46, 0.54), (0.34, 0.4), (0.48, 0.56), ("red", "cast iron")),
+    "cable tray": kind(wall.cable_tray, (2.2, 3.2), (0.28, 0.34), (0.18, 0.24), ("silver", "galvanised steel")),
+    "first-aid cabinet": kind(wall.first_aid_cabinet, (0.38, 0.44), (0.15, 0.17), (0.46, 0.54), ("white", "enamel")),
+    "tool board": kind(wall.tool_board, (1.2, 1.6), (0.08, 0.1), (0.85, 1.0), ("sage", "painted wood")),
+    "wall planter": kind(wall.wall_planter, (0.65, 0.8), (0.26, 0.32), (0.46, 0.55), ("terracotta", "clay")),
+    "drainpipe": kind(wall.drainpipe, (0.16, 0.18), (0.16, 0.18), (2.6, 3.2), ("slate grey", "zinc")),
+    "balcony": kind(wall.balcony, (2.2, 3.0), (1.0, 1.2), (1.25, 1.4), ("charcoal", "wrought iron")),
+    "window box": kind(wall.window_box, (0.85, 1.2), (0.26, 0.32), (0.38, 0.46), ("terracotta", "clay")),
+    "row of coat hooks": kind(wall.coat_hooks, (0.8, 1.1), (0.13, 0.16), (0.42, 0.52), ("oak brown", "oak")),
 }  # fmt: skip
 
 UNKNOWN = _kind(utility.plain_box, (0.4, 0.7), (0.35, 0.5), (0.4, 0.7))

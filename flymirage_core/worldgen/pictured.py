@@ -178,8 +178,17 @@ def _labels(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, in
     return np.asarray(image)
 
 
+def _page(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, ink: Colour) -> Float:
+    """A printed page: lines of grey on paper, with margins."""
+    x, y = uv[:, 0] / extent[0], uv[:, 1] / extent[1]
+    line = np.floor(y * 14).astype(np.int64)
+    inside = (x > 0.12) & (x < 0.72 + 0.2 * lattice_hash(line[:, None], seed)) & (line > 0) & (line < 13)
+    printed = inside & (y * 14 - line < 0.5)
+    return np.where(printed[:, None], 0.5 * np.asarray(colour), np.asarray(colour))
+
+
 PICTURES: dict[str, Picture] = {
     "painting": _painting, "landscape": _landscape, "screen": _screen, "notes": _notes, "sky": _sky, "text": _text,
     "hazard": _hazard, "stripes": _stripes, "checks": _checks, "grille": _grille, "map": _map, "dial": _dial,
-    "buttons": _buttons, "labels": _labels,
+    "buttons": _buttons, "labels": _labels, "page": _page,
 }  # fmt: skip

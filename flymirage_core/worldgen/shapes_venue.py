@@ -160,7 +160,7 @@ def piano(size: Vector, f: Finish) -> list[Part]:
     keys = [box(WHITE, (1.34, 0.14, 0.02), (0, 0.22, 0.7)), box(f.main, (1.38, 0.02, 0.06), (0, 0.145, 0.7))]
     keys += [box(DARK, (0.013, 0.085, 0.014), (-0.66 + 0.0258 * i, 0.19, 0.72)) for i in range(52) if i % 7 not in (2, 6)]
     keys += [box(paint("grey"), (0.002, 0.14, 0.003), (-0.673 + 0.0258 * i, 0.22, 0.7185)) for i in range(0, 53, 2)]
-    desk = [box(f.main.shaded(1.25), (1.1, 0.02, 0.32), (0, 0.055, 0.8), 0.004), box(f.main, (1.0, 0.05, 0.02), (0, 0.08, 0.82)), box(paint("ivory", "notes"), (0.44, 0.008, 0.28), (0, 0.085, 0.84), 0, 0.1)]
+    desk = [box(f.main.shaded(1.25), (1.1, 0.02, 0.32), (0, 0.055, 0.8), 0.004), box(f.main, (1.0, 0.05, 0.02), (0, 0.08, 0.82)), box(paint("ivory", "page"), (0.44, 0.008, 0.28), (0, 0.085, 0.84), 0, 0.1)]
     pedals = [box(BRASS, (0.05, 0.14, 0.012), (u, 0.1, 0.05), 0.004) for u in (-0.09, 0, 0.09)]
     return [*body, *bed, *keys, *desk, *pedals, box(f.main.shaded(0.85), (1.36, 0.02, 0.44), (0, 0.06, 0.08))]
 
@@ -204,7 +204,7 @@ def speaker(size: Vector, f: Finish) -> list[Part]:
 
 def music_stand(size: Vector, f: Finish) -> list[Part]:
     legs = [*spun(pipe(f.main, [(0, 0, 0.25), (0.24, 0, 0)], 0.01), 3, 0.5), pipe(f.main, [(0, 0, 0.15), (0, 0, 0.95)], 0.013)]
-    desk = [box(f.main, (0.5, 0.012, 0.3), (0, 0.0, 0.9), 0.004, 0.35), box(f.main, (0.5, 0.06, 0.012), (0, 0.03, 0.9)), box(paint("ivory", "notes", detail=0.4), (0.42, 0.006, 0.27), (0, 0.012, 0.91), 0, 0.35)]
+    desk = [box(f.main, (0.5, 0.012, 0.3), (0, 0.0, 0.9), 0.004, 0.35), box(f.main, (0.5, 0.06, 0.012), (0, 0.03, 0.9)), box(paint("ivory", "page", detail=0.4), (0.42, 0.006, 0.27), (0, 0.012, 0.91), 0, 0.35)]
     return [*legs, *desk]
 
 
@@ -279,7 +279,7 @@ def _fish(rng: np.random.Generator, colour: str) -> list[Part]:
 def lectern(size: Vector, f: Finish) -> list[Part]:
     column = [tapered(f.main, [(0.5, 0.42, 0), (0.5, 0.42, 0.06), (0.34, 0.28, 0.1), (0.3, 0.24, 0.95)], radius=0.01)]
     slope = [placed(box(f.main, (0.6, 0.46, 0.04), (0, 0, 0), 0.008), (0, 0, 1.02), np.array([[1.0, 0, 0], [0, 0.94, -0.34], [0, 0.34, 0.94]]))]
-    book = [placed(box(paint("ivory", "notes", detail=0.4), (0.4, 0.28, 0.03), (0, 0, 0.04), 0.008), (0, 0, 1.02), np.array([[1.0, 0, 0], [0, 0.94, -0.34], [0, 0.34, 0.94]]))]
+    book = [placed(box(paint("ivory", "page", detail=0.4), (0.4, 0.28, 0.03), (0, 0, 0.04), 0.008), (0, 0, 1.02), np.array([[1.0, 0, 0], [0, 0.94, -0.34], [0, 0.34, 0.94]]))]
     mic = [pipe(DARK, [(0.2, 0.18, 1.1), (0.16, 0.16, 1.3), (0.08, -0.02, 1.36)], 0.006, 0.1), ellipsoid(DARK, (0.018,) * 3, (0.08, -0.03, 1.36))]
     return [*column, *slope, *book, *mic, box(f.second, (0.2, 0.012, 0.3), (0, 0.14, 0.5), 0.004)]
 
