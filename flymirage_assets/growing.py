@@ -42,20 +42,20 @@ def night_scenes(store: Store, night: date, count: int, taxonomy: Taxonomy | Non
     return keys
 
 
-def next_scenes(store: Store, instance: dg.DagsterInstance, count: int) -> list[str]:
+def next_scenes(store: Store, instance: dg.DagsterInstance, count: int, taxonomy: Taxonomy | None = None) -> list[str]:
     """Keys of ``count`` scenes for `flymirage grow`: unfinished ones first, then new ones, which are registered."""
     begun = unfinished_scenes(store, instance)[:count]
     known = set(store.scenes())
     fresh = (key for i in itertools.count(1) if (key := f"scene-{i:04d}") not in known)
-    return begun + list(itertools.islice((key for key in fresh if _claim(store, [key])), count - len(begun)))
+    return begun + list(itertools.islice((key for key in fresh if _claim(store, [key], taxonomy)), count - len(begun)))
 
 
-def endless_scenes(store: Store, instance: dg.DagsterInstance) -> Iterator[str]:
+def endless_scenes(store: Store, instance: dg.DagsterInstance, taxonomy: Taxonomy | None = None) -> Iterator[str]:
     """Unfinished scenes, each once, then new ones without end."""
     yield from unfinished_scenes(store, instance)
     known = set(store.scenes())
     for i in itertools.count(1):
-        if (key := f"scene-{i:04d}") not in known and _claim(store, [key]):
+        if (key := f"scene-{i:04d}") not in known and _claim(store, [key], taxonomy):
             yield key
 
 

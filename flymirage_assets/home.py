@@ -2,12 +2,17 @@
 
 import os
 import shutil
+import socket
+from collections.abc import Mapping
 from pathlib import Path
 
 import dagster as dg
 
+from flymirage_assets.pools import POOL_LIMITS
+
 PID_TAG = ".dagster/flymirage_pid"  # the prefix keeps them out of the UI
 BOOT_TAG = ".dagster/flymirage_boot"
+HOST_TAG = ".dagster/flymirage_host"
 
 
 def prepare_home() -> Path:
@@ -22,17 +27,42 @@ def prepare_home() -> Path:
 
 def process_tags() -> dict[str, str]:
     """Tags that tell later which process ran a run, so that a killed one is recognised."""
-    return {PID_TAG: str(os.getpid()), BOOT_TAG: _boot_id()}
+    return {PID_TAG: str(os.getpid()), BOOT_TAG: _boot_id(), HOST_TAG: socket.gethostname()}
+
+
+def tag_with_process(instance: dg.DagsterInstance, run: dg.DagsterRun) -> None:
+    """Let a run that the daemon launched be recognised too when its process is gone."""
+    if PID_TAG not in run.tags and not run.is_finished:
+        instance.add_run_tags(run.run_id, process_tags())
+
+
+def limit_pools(instance: dg.DagsterInstance) -> None:
+    """Give each pool its limit, unless somebody set another one."""
+    storage = instance.event_log_storage
+    known = {limit.name for limit in storage.get_pool_limits() if not limit.from_default}
+    for pool, limit in POOL_LIMITS.items():
+        if pool not in known:
+            storage.set_concurrency_slots(pool, limit)
 
 
 def close_dead_runs(instance: dg.DagsterInstance) -> int:
-    """Report runs as failed whose command-line process is gone (kill -9, power cut), and free their slots."""
+    """Report runs of this machine as failed whose process is gone (kill -9, power cut), and free their pool slots.
+
+    The daemon then runs them again once, from the stage that failed; so does the same command.
+    """
     running = instance.get_runs(dg.RunsFilter(statuses=[dg.DagsterRunStatus.STARTED, dg.DagsterRunStatus.STARTING]))
-    dead = [run for run in running if PID_TAG in run.tags and not _is_alive(run.tags[PID_TAG], run.tags[BOOT_TAG])]
+    dead = [run for run in running if _is_dead(run.tags)]
     for run in dead:
         instance.report_run_failed(run, "the process of this run is gone; run the command again to carry on")
+    for run in dead:
         instance.event_log_storage.free_concurrency_slots_for_run(run.run_id)
     return len(dead)
+
+
+def _is_dead(tags: Mapping[str, str]) -> bool:
+    if PID_TAG not in tags or tags.get(HOST_TAG, socket.gethostname()) != socket.gethostname():
+        return False  # nothing is known of it from here
+    return not _is_alive(tags[PID_TAG], tags[BOOT_TAG])
 
 
 def _is_alive(pid: str, boot: str) -> bool:

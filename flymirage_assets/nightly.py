@@ -10,6 +10,7 @@ from flymirage_assets.growing import night_scenes, why_stop
 from flymirage_assets.runs import scene_tags
 from flymirage_assets.stage import scenes
 from flymirage_assets.staleness import stage_specs, stale_products
+from flymirage_core.scene.taxonomy import taxonomy_named
 from flymirage_core.settings import Settings
 from resources.store import open_store
 
@@ -30,7 +31,7 @@ def nightly_schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
             yield dg.SkipReason(reason)
             return
         night = _night(context)
-        keys = night_scenes(store, night, growth.scenes_per_night)
+        keys = night_scenes(store, night, growth.scenes_per_night, taxonomy_named(settings.taxonomy))
         context.instance.add_dynamic_partitions(str(scenes.name), keys)
         asked = {run.tags.get("dagster/partition") for run in _runs_of(context, night)}
         for key in keys:

@@ -12,7 +12,7 @@ from typing import Any
 import dagster as dg
 
 from flymirage_assets.failures import STOPS_GROWTH
-from flymirage_assets.home import close_dead_runs, prepare_home, process_tags
+from flymirage_assets.home import close_dead_runs, limit_pools, prepare_home, process_tags
 from flymirage_assets.stage import scenes
 from flymirage_core.errors import FlyMirageError
 from resources.records import SceneOrigin
@@ -32,12 +32,13 @@ class RunOutcome:
 
 @contextmanager
 def dagster_instance() -> Iterator[dg.DagsterInstance]:
-    """The instance that the UI shows, freed of runs whose process was killed."""
+    """The instance that the UI shows, freed of runs whose process was killed, with its pools' limits set."""
     prepare_home()
     warnings.filterwarnings("ignore", module="dagster")
     logging.getLogger("alembic").setLevel(logging.WARNING)
     with dg.DagsterInstance.get() as instance:
         close_dead_runs(instance)
+        limit_pools(instance)
         yield instance
 
 
@@ -92,6 +93,16 @@ def _run(
         interrupted=any(_is_interrupt(failure) for failure in failures),
         stops_growth=_stops_growth(failures[0]),
     )
+
+
+def forget_scene(instance: dg.DagsterInstance, scene: str) -> int:
+    """Take a scene's key and its runs, with all their events, out of Dagster; return how many runs."""
+    runs = instance.get_runs(dg.RunsFilter(tags={"dagster/partition": scene}))
+    for run in runs:
+        instance.delete_run(run.run_id)
+    if instance.has_dynamic_partition(str(scenes.name), scene):
+        instance.delete_dynamic_partition(str(scenes.name), scene)
+    return len(runs)
 
 
 def launch_backfill(assets: Sequence[str], keys: Sequence[str]) -> str:

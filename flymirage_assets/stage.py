@@ -25,6 +25,7 @@ from flymirage_assets.checks import check_results, check_specs
 from flymirage_assets.conditions import condition_of
 from flymirage_assets.failures import one_clear_sentence
 from flymirage_assets.hashing import hash_of, input_hash_of
+from flymirage_assets.home import tag_with_process
 from flymirage_assets.pools import is_paid, pool_of
 from flymirage_core.errors import ModerationError, ProductError
 from flymirage_core.pictures.encoding import jpeg_under
@@ -234,6 +235,8 @@ def product_asset(
         )
         def materialise(context: dg.AssetExecutionContext, **inputs: Any):  # type: ignore[no-untyped-def]
             store = cast(ProductIOManager, context.resources.io_manager).store
+            if settings.executor == "in_process":
+                tag_with_process(context.instance, context.run)
             with one_clear_sentence():
                 scene = check_scene_key(context.partition_key)
                 digests = upstream_digests(store, scene, upstream)

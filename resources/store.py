@@ -124,6 +124,19 @@ class Store:
         products = self.base / "products"
         return sorted(p.name for p in products.iterdir()) if products.exists() else []
 
+    def scenes_with(self, asset: str) -> set[str]:
+        """Keys of scenes that have a product ``asset``: one listing, however many there are.
+
+        On an object store a scene counts from the first file of its product on, not from the last.
+        """
+        folder = self.base / "products" / asset
+        if not folder.exists():
+            return set()
+        if not self.is_local:
+            return {p.name for p in folder.iterdir()}
+        with os.scandir(str(folder)) as entries:
+            return {e.name for e in entries if os.path.exists(f"{e.path}/product.json")}  # noqa: PTH110 - 10,000 times
+
     def current(self, asset: str, scene: str) -> ProductRecord | None:
         """The record of the product that is current, or None if there is none yet."""
         path = self._product(asset, scene) / "product.json"
@@ -216,6 +229,10 @@ class Store:
             return (self.base / name).read_text()
         except FileNotFoundError:
             return None
+
+    def remove_note(self, name: str) -> None:
+        """Forget what `write_note` kept."""
+        (self.base / name).unlink(missing_ok=True)
 
     # What services answered ------------------------------------------------------------------------------------------
 

@@ -3,11 +3,11 @@
 from rich.console import Console
 from rich.markup import escape
 
-from flymirage_assets.cli import data, doctor, exports, growth, models, worlds
+from flymirage_assets.cli import costs, data, doctor, exports, figures, growth, models, operations, worlds
 from flymirage_assets.cli.app import app
-from flymirage_core.errors import FlyMirageError
+from flymirage_core.errors import NO_RETRY, FlyMirageError
 
-__all__ = ["app", "data", "doctor", "exports", "growth", "main", "models", "worlds"]
+__all__ = ["app", "costs", "data", "doctor", "exports", "figures", "growth", "main", "models", "operations", "worlds"]
 
 INTERRUPTED = 130
 """Exit code after Ctrl-C, as shells expect it."""
@@ -23,5 +23,13 @@ def main() -> None:
         )
         raise SystemExit(INTERRUPTED) from None
     except FlyMirageError as error:
-        Console(stderr=True).print(f"[red]error:[/red] {escape(str(error))}", soft_wrap=True, highlight=False)
-        raise SystemExit(1) from None
+        _say(str(error))
+    except OSError as error:
+        if error.errno not in NO_RETRY:
+            raise
+        _say(f"{error.filename} cannot be written: {NO_RETRY[error.errno]}; make room, or set FLYMIRAGE_STORE")
+
+
+def _say(sentence: str) -> None:
+    Console(stderr=True).print(f"[red]error:[/red] {escape(sentence)}", soft_wrap=True, highlight=False)
+    raise SystemExit(1)

@@ -60,10 +60,11 @@ def grow(
     from flymirage_assets.growing import endless_scenes, next_scenes
     from flymirage_assets.report import scenes_table
     from flymirage_assets.runs import dagster_instance
+    from flymirage_core.scene.taxonomy import taxonomy_named
 
-    store = project_store()
+    store, kinds = project_store(), taxonomy_named(project_settings().taxonomy)
     with dagster_instance() as instance:
-        keys = endless_scenes(store, instance) if forever else next_scenes(store, instance, scenes)
+        keys = endless_scenes(store, instance, kinds) if forever else next_scenes(store, instance, scenes, kinds)
         begun = grow_scenes(instance, keys)
     console.print(scenes_table(store, begun[-20:]))
 
