@@ -16,6 +16,7 @@ import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
 from flymirage_core.dataset.lerobot_schema import CODEBASE_VERSION, DEPTH_KEY, RGB_KEY
+from flymirage_core.dataset.scene_folders import png16_from
 from flymirage_core.errors import InputError, ProductError
 
 
@@ -98,7 +99,7 @@ class LeRobotFolder:
     def rgb(self, episode: int) -> Iterator[NDArray[np.uint8]]:
         """Pictures (H, W, 3), in order, found by the episode's timestamps alone."""
         record = self.episodes[episode]
-        path, first = self._video(record)
+        path, first = self.video(record)
         rate = self.info["fps"]
         with av.open(str(path)) as container:
             stream = container.streams.video[0]
@@ -110,18 +111,17 @@ class LeRobotFolder:
                     return
                 if number >= first:
                     planes = frame.to_ndarray(format="yuv420p")  # to RGB as `rendering.video` does it
-                    yield np.asarray(
-                        cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8
-                    )  # as `rendering.video` does
+                    yield np.asarray(cv2.cvtColor(planes, cv2.COLOR_YUV2RGB_I420), np.uint8)
 
     def depth(self, episode: int) -> Iterator[NDArray[np.uint16]]:
         """Depth (H, W) in millimetres, in order; nothing if the export holds none."""
+        for i, cell in enumerate(self.depth_cells(episode)):
+            yield png16_from(cell, f"{self.folder}: depth picture {i} of episode {episode}")
+
+    def depth_cells(self, episode: int) -> Iterator[bytes]:
+        """The depth pictures as they are stored, in order; nothing if the export holds none."""
         if DEPTH_KEY in self.info["features"]:
-            for cell in self._table(episode, (DEPTH_KEY,))[DEPTH_KEY].to_pylist():
-                image = cv2.imdecode(np.frombuffer(cell["bytes"], np.uint8), cv2.IMREAD_UNCHANGED)
-                if image is None:
-                    raise ProductError(f"{self.folder}: a depth picture of episode {episode} is torn; export again")
-                yield image.astype(np.uint16)
+            yield from (cell["bytes"] or b"" for cell in self._table(episode, (DEPTH_KEY,))[DEPTH_KEY].to_pylist())
 
     def frames(self, episode: int) -> Iterator[ExportedFrame]:
         """The frames of an episode, pictures and numbers together."""
@@ -147,9 +147,7 @@ class LeRobotFolder:
 
     def _table(self, episode: int, names: tuple[str, ...]) -> pa.Table:
         record = self.episodes[episode]
-        path = self.folder / self.info["data_path"].format(
-            chunk_index=record.row["data/chunk_index"], file_index=record.row["data/file_index"]
-        )
+        path = self._data_file(record)
         chosen = pc.field("episode_index") == record.index
         table = pq.read_table(path, columns=list(names), filters=chosen)
         if len(table) != record.length:
@@ -158,11 +156,28 @@ class LeRobotFolder:
             )
         return table
 
-    def _video(self, record: EpisodeRecord) -> tuple[Path, int]:
+    def video(self, record: EpisodeRecord) -> tuple[Path, int]:
         """The file, and the number of the episode's first frame in it."""
         where = {k: record.row[f"videos/{RGB_KEY}/{k}"] for k in ("chunk_index", "file_index", "from_timestamp")}
         path = self.folder / self.info["video_path"].format(video_key=RGB_KEY, **where)
         return path, round(where["from_timestamp"] * self.info["fps"])
+
+    def row_group(self, record: EpisodeRecord) -> tuple[Path, int]:
+        """The data file, and the number of the episode's row group in it: each episode is one."""
+        files = self._first_in_file
+        place = (record.row["data/chunk_index"], record.row["data/file_index"])
+        return self._data_file(record), record.index - files[place]
+
+    @cached_property
+    def _first_in_file(self) -> dict[tuple[int, int], int]:
+        first: dict[tuple[int, int], int] = {}
+        for e in self.episodes:
+            first.setdefault((e.row["data/chunk_index"], e.row["data/file_index"]), e.index)
+        return first
+
+    def _data_file(self, record: EpisodeRecord) -> Path:
+        where = {k: record.row[f"data/{k}"] for k in ("chunk_index", "file_index")}
+        return self.folder / str(self.info["data_path"]).format(**where)
 
 
 def _numpy(column: pa.ChunkedArray) -> NDArray[Any]:
