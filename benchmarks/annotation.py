@@ -29,7 +29,7 @@ from flymirage_core.annotation.annotator import Annotator
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.annotation.colours import colour_name, to_lab
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
-from flymirage_core.annotation.exploration import explore
+from flymirage_core.annotation.exploration import exploration_paths, explore
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.targets import select_targets
@@ -39,6 +39,8 @@ from flymirage_core.language.scene_relations import Truth
 from flymirage_core.occupancy.grid import OccupancyGrid
 from flymirage_core.occupancy.voxelise import occupancy_from_splats
 from flymirage_core.pictures.box_overlay import draw_boxes
+from flymirage_core.pictures.floor_plan import FloorPlan
+from flymirage_core.pictures.target_selection import draw_target_selection
 from flymirage_core.rendering.camera import Camera
 from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.rendering.placements import orbit, view_intrinsics
@@ -170,9 +172,11 @@ def generated(key: str, settings: Settings) -> Scene:
     description = OfflineSceneWriter().describe(key)
     world = OfflineWorldModel(settings.generation).build(description)
     truth = build_truth(description)
-    openings = [np.array(corners) for corners in truth.openings]
-    category = f"{description.category} / {description.subcategory}"
-    known = {"truth": truth.objects, "openings": openings, "category": category}
+    known = {
+        "truth": truth.objects,
+        "openings": [np.array(opening) for opening in truth.openings],
+        "category": f"{description.category} / {description.subcategory}",
+    }
     return splat_scene(key, world.cloud, world.centre, settings, **known)
 
 
@@ -322,17 +326,27 @@ def _line(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
     ]
 
 
-def write_pictures(folder: Path, scene: Scene, seen: Seen, boxes: BoxMap, max_distance: float) -> None:
-    """Overlays: boxes of pass 2 in six views of the orbit and in six of the exploration."""
+def write_pictures(folder: Path, scene: Scene, seen: Seen, boxes: BoxMap, settings: Settings) -> None:
+    """Boxes of pass 2 in six views of the orbit and in six of the exploration; and Algorithm 1 from above."""
     folder.mkdir(parents=True, exist_ok=True)
     views = seen.orbit_views
     picks = [views[k] for k in range(len(views) // 3, 2 * len(views) // 3, 2)]
     rigs = seen.all_views[len(views) :]
     picks += [rigs[k] for k in np.linspace(0, len(rigs) - 1, 6).astype(int)] if rigs else []
-    tiles = [draw_boxes(_big_picture(v), _big_camera(v.camera), boxes, 2 * max_distance) for v in picks]
+    tiles = [
+        draw_boxes(_big_picture(v), _big_camera(v.camera), boxes, 2 * settings.targets.near_distance) for v in picks
+    ]
     tiles += [np.zeros_like(tiles[0])] * (-len(tiles) % 2)
     sheet = np.vstack([np.hstack(tiles[k : k + 2]) for k in range(0, len(tiles), 2)])
-    cv2.imwrite(str(folder / f"{scene.name.replace(' ', '_')}.png"), sheet[:, :, ::-1])
+    stem = scene.name.replace(" ", "_")
+    cv2.imwrite(str(folder / f"{stem}.png"), sheet[:, :, ::-1])
+    targets = select_targets(seen.first, scene.centre, settings.targets)
+    ways = exploration_paths(scene.grid, scene.centre, targets, settings.exploration)
+    plan = FloorPlan.of(scene.grid, (max(0.3, scene.centre[2] - 0.8), scene.centre[2] + 0.6))
+    drawing = draw_target_selection(
+        plan, seen.first, targets.boxes, scene.centre, settings.targets, [way.positions for way in ways]
+    )
+    cv2.imwrite(str(folder / f"{stem}_algorithm_1.png"), drawing[:, :, ::-1])
 
 
 def _big_picture(view: View) -> np.ndarray:
@@ -355,7 +369,7 @@ def show(arguments: argparse.Namespace, annotator: Annotator, settings: Settings
         figures = " ".join(f"{k} {v:.2f}" if isinstance(v, float) else f"{k} {v}" for k, v in row.items())
         print(f"{scene.name}: {figures} CPU {seen.seconds:.1f} + {seconds:.1f} s", flush=True)
         if arguments.pictures:
-            write_pictures(arguments.pictures, scene, seen, boxes, settings.targets.near_distance)
+            write_pictures(arguments.pictures, scene, seen, boxes, settings)
         if not scene.truth:
             for b in boxes:
                 size = " x ".join(f"{s:.2f}" for s in b.size)

@@ -231,8 +231,8 @@ averaged. Made by `benchmarks/train_recogniser.py` (`collect`, then `train`); se
 views that show most of it. **Output**: a noun, else the family of nouns, else "object"; a material or none.
 
 **Data**: {len(set(trained.worlds.tolist()))} generated worlds, {len(trained.nouns)} boxes that the annotator
-itself made of their renders ({(trained.nouns == LEFT_OVER).sum()} of them no object of their own); labels from the generator.
-No photograph, no captured room, nobody's data but our own.
+itself made of their renders ({(trained.nouns == LEFT_OVER).sum()} of them no object of their own);
+labels from the generator. No photograph, no captured room, nobody's data but our own.
 
 **Figures** on {len(set(held_out.worlds.tolist()))} worlds that were not trained on ({objects.sum()} matched boxes). The
 thresholds were set on these, so `benchmarks/ANNOTATION.md`, on further worlds, is the judge.

@@ -19,6 +19,7 @@ from flymirage_core.pictures.box_overlay import draw_boxes
 from flymirage_core.pictures.canvas import INK, Picture, contact_sheet, hue, resized, stacked, text_card
 from flymirage_core.pictures.flights import flight_over_time, flights_by_speed
 from flymirage_core.pictures.floor_plan import FloorPlan
+from flymirage_core.pictures.target_selection import draw_target_selection
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.frames import FlightFrames, Frames
 from flymirage_core.rendering.picture import ScenePicture
@@ -63,13 +64,7 @@ def orbit_boxes(stage: Stage, product: BoxMap, orbit_renders: PosedViews) -> Pic
 def targets(stage: Stage, product: Targets, orbit_boxes: BoxMap, world: World) -> Picture:
     grid = occupancy_from_splats(world.cloud, world.centre, stage.settings.occupancy)
     plan = _plan(grid, world.centre)
-    plan.boxes(orbit_boxes)
-    for box in product.boxes:
-        plan.path(np.stack([world.centre, box.centre]), GOAL, 1)
-        plan.dot(box.centre, GOAL)
-    plan.dot(world.centre, START)
-    names = ", ".join(b.label for b in product.boxes) or "none: every object is near enough"
-    return plan.with_caption([f"green: c   red: the targets of Algorithm 1 ({names})"])
+    return draw_target_selection(plan, orbit_boxes, product.boxes, world.centre, stage.settings.targets)
 
 
 def exploration(stage: Stage, product: PosedViews, world: World, targets: Targets) -> Picture:

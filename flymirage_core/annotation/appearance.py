@@ -179,7 +179,7 @@ def _crops(box: FittedBox, frames: Sequence[Frame]) -> Float32:
     found = [crop for frame in frames if (crop := _crop(box, frame)) is not None]
     if not found:
         return np.zeros(_CROP_COLOURS + _EDGES, np.float32)
-    return np.mean([_crop_features(*crop) for crop in found], axis=0, dtype=np.float32)
+    return np.asarray(np.mean([_crop_features(*crop) for crop in found], axis=0), np.float32)
 
 
 def window_of(box: FittedBox, frame: Frame) -> tuple[int, int, int, int] | None:

@@ -27,10 +27,11 @@ from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import Support
 from flymirage_core.annotation.merging import merge_parts
-from flymirage_core.annotation.naming import Name, named
+from flymirage_core.annotation.naming import Name, is_believed, named
 from flymirage_core.annotation.normals import surface_normals
 from flymirage_core.annotation.parts import PartSet, Surface
-from flymirage_core.annotation.picture_votes import Vote, look_at, votes
+from flymirage_core.annotation.picture_joins import join_pieces
+from flymirage_core.annotation.picture_votes import look_at, votes
 from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.segmentation import (
@@ -40,7 +41,7 @@ from flymirage_core.annotation.segmentation import (
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
 from flymirage_core.annotation.wall_objects import wall_objects
-from flymirage_core.annotation.yolox import YoloxDetector
+from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
 from flymirage_core.rendering.views import View
 from flymirage_core.settings import AnnotationSettings
 
@@ -88,46 +89,38 @@ class EmbeddedAnnotator:
         `HALF_AN_OBJECT` are not looked at.
         """
         frames = frames_of(views)
-        found = self.observations(frames, max_distance)
-        names = named([thing for thing, _ in found], self._votes(found, frames))
+        pictures = look_at(frames, self.detector) if self.detector is not None else []
+        found = self.observations(frames, max_distance, pictures)
+        hits = np.array([seen.hits for _, seen in found])  # (B, F)
+        boxes = [thing.box for thing, _ in found]
+        said = votes(boxes, hits, frames, pictures) if pictures else [None] * len(found)
+        names = named([thing for thing, _ in found], said)
+        kept = [(t, s, n) for (t, s), n in zip(found, names, strict=True) if is_believed(t.box, n, s.nearest)]
         annotator = f"{self.name} {self.version}"
-        return BoxMap(
-            tuple(
-                _object_box(k, thing, name, seen, annotator)
-                for k, ((thing, seen), name) in enumerate(zip(found, names, strict=True))
-            )
-        )
+        return BoxMap(tuple(_object_box(k, t, n, s, annotator) for k, (t, s, n) in enumerate(kept)))
 
-    def observations(self, frames: Sequence[Frame], max_distance: float) -> list[tuple[Observation, Detections]]:
-        """The boxes of the objects, with what names are judged by and how each was seen; see `annotate`."""
+    def observations(
+        self, frames: Sequence[Frame], max_distance: float, pictures: Sequence[Sequence[PictureDetection]] = ()
+    ) -> list[tuple[Observation, Detections]]:
+        """The boxes of the objects, with what names are judged by and how each was seen; see `annotate`.
+
+        ``pictures``: what a 2D detector found in each frame, if there is one.
+        """
         structure = self.structure(frames)
         cloud = fuse_points(frames, self.settings.voxel, max_distance + HALF_AN_OBJECT)
         cloud = _solid_cloud(cloud, structure, frames)
         boxes = propose_boxes(cloud, structure, self.settings.voxel)
+        if pictures:
+            boxes = join_pieces(boxes, cloud, structure, frames, pictures, max_distance)
         support = detections(cloud.points, boxes, frames, max_distance)
         seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
         rivals = [box for box, _ in seen]
-        return [
-            (
-                observe(
-                    box,
-                    support_of(box, rivals, structure),
-                    cloud,
-                    structure,
-                    frames,
-                    best_views(box, found.hits, frames),
-                ),
-                found,
-            )
-            for box, found in seen
-        ]
-
-    def _votes(self, found: Sequence[tuple[Observation, Detections]], frames: Sequence[Frame]) -> list[Vote | None]:
-        """What the 2D detector says about each box, if there is one."""
-        if self.detector is None or not found:
-            return [None] * len(found)
-        hits = np.stack([seen.hits for _, seen in found])  # (B, F)
-        return votes([thing.box for thing, _ in found], hits, frames, look_at(frames, self.detector))
+        observed = []
+        for box, found in seen:
+            views = best_views(box, found.hits, frames)
+            thing = observe(box, support_of(box, rivals, structure), cloud, structure, frames, views)
+            observed.append((thing, found))
+        return observed
 
     def structure(self, frames: Sequence[Frame]) -> RoomStructure:
         """The building, from a coarse cloud of views spread over the sequence."""

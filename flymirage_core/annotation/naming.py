@@ -1,4 +1,7 @@
-"""Names for observed boxes: what the detector's views agree on, what the recogniser is sure of, else "object"."""
+"""Names for observed boxes: what the detector's views agree on, what the recogniser is sure of, else "object".
+
+And whether a box is believed at all.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from flymirage_core.annotation.appearance import Observation
+from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.picture_votes import Vote
 from flymirage_core.annotation.recogniser import Recognition, trained_recogniser
@@ -17,14 +21,28 @@ HALF_VOTE: Final = 1.5
 """Weight of votes that is worth a score of one half."""
 
 
+MAX_LEFT_OVER: Final = 0.7
+"""Probability of being no object of its own from which a box that the detector does not know is dropped."""
+NEAR_ENOUGH: Final = 3.0
+"""Metres; what no view saw from so near is not judged: from afar everything looks like a left-over."""
+LEAST_UNNAMED: Final = (0.10, 0.15)
+"""Metres: least thickness (but flat on a wall) and least second longest side of a thing that nobody has a name for;
+what is thinner is a slat, a frame, a strip."""
+PANEL: Final = 2.0
+"""Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
+BUILDING: Final = frozenset({"window"})
+"""What has a name, but is no thing."""
+
+
 @dataclass(frozen=True)
 class Name:
-    """What a box is called, by what, how sure (0..1), and what it seems to be made of."""
+    """What a box is called, by what, how sure (0..1), what it seems to be made of, and whether it is anything."""
 
     noun: str
     source: str  # "detector", "recogniser"
     score: float
     material: str
+    left_over: float  # probability that it is no object of its own
 
 
 def named(things: Sequence[Observation], votes: Sequence[Vote | None]) -> list[Name]:
@@ -32,16 +50,34 @@ def named(things: Sequence[Observation], votes: Sequence[Vote | None]) -> list[N
     if not things:
         return []
     recognised = trained_recogniser().recognise(np.stack([thing.features for thing in things]))
-    return [_name(recognition, vote) for recognition, vote in zip(recognised, votes, strict=True)]
+    return [_name(r, vote, thing.box) for thing, r, vote in zip(things, recognised, votes, strict=True)]
 
 
-def _name(recognition: Recognition, vote: Vote | None) -> Name:
-    """The recogniser's finer noun where both agree on the kind; the detector's where the recogniser is not sure."""
+def is_believed(box: FittedBox, name: Name, nearest: float) -> bool:
+    """Whether a box is an object: what the detector knows is; what looks like a left-over from near is not.
+
+    ``nearest``: metres to the nearest view that saw it.
+    """
+    if name.source == "detector" or nearest > NEAR_ENOUGH:
+        return True
+    if name.noun in BUILDING or name.left_over >= MAX_LEFT_OVER:
+        return False
+    thin, second, longest = sorted(box.size)
+    slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
+    return not (name.noun == UNKNOWN and slat)
+
+
+def _name(recognition: Recognition, vote: Vote | None, box: FittedBox) -> Name:
+    """The recogniser's finer noun where both agree on the kind; the detector's where the recogniser is not sure.
+
+    What hangs flat on a wall may be a picture: the detector takes those for televisions, so the recogniser is asked.
+    """
     score = 0.0 if recognition.noun == UNKNOWN else recognition.confidence
-    own = Name(recognition.noun, "recogniser", score, recognition.material)
-    if vote is None or agree(recognition.noun, vote.noun) or (score >= SURE):
+    own = Name(recognition.noun, "recogniser", score, recognition.material, recognition.left_over)
+    if vote is None or agree(recognition.noun, vote.noun) or score >= SURE or (box.on_wall and score > 0):
         return own
-    return Name(vote.noun, "detector", vote.weight / (vote.weight + HALF_VOTE), recognition.material)
+    weight = vote.weight / (vote.weight + HALF_VOTE)
+    return Name(vote.noun, "detector", weight, recognition.material, recognition.left_over)
 
 
 def agree(fine: str, coarse: str) -> bool:

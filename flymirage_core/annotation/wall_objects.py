@@ -23,8 +23,6 @@ MAX_PAINT_STEP: Final = 3.0
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
 FRONT_PERCENTILE: Final = 60
-EDGE_LOSS: Final = 0.015
-"""Metres by which a thing ends beyond its cells: those on its edge have the colour of both."""
 MIN_AREA: Final = 0.06
 """Square metres."""
 MIN_SIDE: Final = 0.15
@@ -72,7 +70,7 @@ def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Fl
         xy = wall.normal * (wall.back + thickness / 2) + wall.direction * (origin[0] + (x + w / 2) * CELL)
         yaw = float(np.arctan2(wall.direction[1], wall.direction[0]))
         centre = (float(xy[0]), float(xy[1]), bottom + h * CELL / 2)
-        size = (w * CELL + 2 * EDGE_LOSS, thickness, h * CELL + 2 * EDGE_LOSS)
+        size = (w * CELL, thickness, h * CELL)
         boxes.append(FittedBox(centre, size, yaw, members[mine], on_wall=True))
     return boxes
 

@@ -75,7 +75,7 @@ class YoloxDetector:
         canvas = np.full((SIDE, SIDE, 3), PAD, np.uint8)
         canvas[:height, :width] = cv2.resize(rgb, (width, height), interpolation=cv2.INTER_LINEAR)[:, :, ::-1]
         self._network.setInput(np.ascontiguousarray(canvas.transpose(2, 0, 1)[None], np.float32))
-        raw = self._network.forward().reshape(-1, 5 + len(COCO))  # (A, 85)
+        raw = np.asarray(self._network.forward(), np.float32).reshape(-1, 5 + len(COCO))  # (A, 85)
         return self._decoded(raw, scale)
 
     def _decoded(self, raw: Float32, scale: float) -> list[PictureDetection]:

@@ -1,0 +1,179 @@
+"""Names: what the recogniser says and when it is silent, what the 2D detector may overrule, and who is dropped."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from flymirage_core.annotation.appearance import FEATURES, mirrored, reversed_depth
+from flymirage_core.annotation.box_fitting import FittedBox
+from flymirage_core.annotation.fused_points import Frame
+from flymirage_core.annotation.labels import UNKNOWN
+from flymirage_core.annotation.naming import Name, agree, is_believed
+from flymirage_core.annotation.picture_votes import vote_weights, votes
+from flymirage_core.annotation.recogniser import Recogniser, trained_recogniser
+from flymirage_core.annotation.yolox import PictureDetection
+from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
+
+
+def recogniser(logits: list[float]) -> Recogniser:
+    """One that says the same of everything: armchair, office chair, vase, or no object."""
+    zeros = np.zeros((1, FEATURES, 4), np.float32)
+    return Recogniser(
+        mean=np.zeros(FEATURES, np.float32),
+        scale=np.ones(FEATURES, np.float32),
+        hidden=((zeros, np.zeros((1, 1, 4), np.float32)),),
+        noun_head=(np.zeros((1, 4, 4), np.float32), np.array([[logits]], np.float32)),
+        material_head=(np.zeros((1, 4, 2), np.float32), np.array([[[0.0, 4.0]]], np.float32)),
+        nouns=("dining chair", "office chair", "vase"),
+        families=("chair", "chair", "vase"),
+        materials=("wood", "metal"),
+        min_noun=0.6,
+        min_family=0.7,
+        min_material=0.8,
+    )
+
+
+def said(*logits: float) -> str:
+    return recogniser(list(logits)).recognise(np.zeros((1, FEATURES), np.float32))[0].noun
+
+
+def test_a_sure_noun_is_said():
+    assert said(5, 0, 0, 0) == "dining chair"
+
+
+def test_two_nouns_of_one_family_give_the_familys_name():
+    assert said(5, 5, 0, 0) == "chair"
+
+
+def test_what_may_be_anything_is_an_object():
+    assert said(1, 1, 1, 1) == UNKNOWN
+
+
+def test_a_material_is_guessed_where_it_is_sure():
+    (answer,) = recogniser([5, 0, 0, 0]).recognise(np.zeros((1, FEATURES), np.float32))
+    assert answer.material == "metal"
+    (unsure,) = replace(recogniser([5, 0, 0, 0]), min_material=0.99).recognise(np.zeros((1, FEATURES), np.float32))
+    assert unsure.material == ""
+
+
+def test_the_trained_weights_fit_the_features_and_are_small():
+    trained = trained_recogniser()
+    nouns, materials = trained.probabilities(np.zeros((3, FEATURES), np.float32))
+    assert nouns.shape == (3, len(trained.nouns) + 1)
+    assert np.allclose(nouns.sum(axis=1), 1, atol=1e-3)
+    assert np.allclose(materials.sum(axis=1), 1, atol=1e-3)
+    assert len(trained.nouns) >= 50
+
+
+def test_features_that_never_occurred_do_not_run_away():
+    nouns, _ = trained_recogniser().probabilities(np.full((1, FEATURES), 1e6, np.float32))
+    assert np.isfinite(nouns).all()
+
+
+@given(st.integers(0, 1000))
+def test_what_is_mirrored_twice_is_as_before(seed):
+    features = np.random.default_rng(seed).normal(size=(2, FEATURES)).astype(np.float32)
+    assert np.array_equal(mirrored(mirrored(features)), features)
+    assert np.array_equal(reversed_depth(reversed_depth(features)), features)
+    assert not np.array_equal(mirrored(features), features)
+
+
+def test_a_kind_of_chair_agrees_with_a_chair():
+    assert agree("office chair", "chair")
+    assert agree("chair", "office chair")
+    assert not agree("chairlift", "chair")
+    assert not agree("television", "painting")
+
+
+# --- the 2D detector's votes
+
+
+INTRINSICS = Intrinsics.from_horizontal_fov(160, 120, math.radians(90))
+
+
+def frame(distance: float) -> Frame:
+    """A view along +y at the origin's height, from so many metres before it."""
+    camera = Camera(INTRINSICS, look_along([0, -distance, 0], [0, 1, 0]))
+    blank = np.zeros((120, 160), np.float32)
+    return Frame(camera, np.zeros((120, 160, 3), np.uint8), blank, blank)
+
+
+def box(x: float, size: tuple[float, float, float] = (0.6, 0.6, 0.9), points: int = 100) -> FittedBox:
+    return FittedBox((x, 0.0, 0.0), size, 0.0, np.arange(points))
+
+
+def window(box: FittedBox, frame: Frame) -> tuple[float, float, float, float]:
+    from flymirage_core.annotation.appearance import window_of
+
+    found = window_of(box, frame)
+    assert found is not None
+    return tuple(map(float, found))
+
+
+FRAMES = [frame(2.0), frame(2.2), frame(2.4)]
+SEEN = np.full((1, 3), 100)
+
+
+def found(label: str, of: FittedBox, score: float = 0.8) -> list[list[PictureDetection]]:
+    return [[PictureDetection(label, score, window(of, f))] for f in FRAMES]
+
+
+def test_views_that_agree_name_a_box():
+    (vote,) = votes([box(0)], SEEN, FRAMES, found("couch", box(0, (1.6, 0.8, 0.8))))[:1]
+    assert vote is None  # a window that does not fit says nothing
+    sofa = box(0, (1.6, 0.8, 0.8))
+    (vote,) = votes([sofa], SEEN, FRAMES, found("couch", sofa))
+    assert vote is not None
+    assert vote.noun == "sofa"
+    assert vote.weight == pytest.approx(2.4)
+    assert vote.views == 3
+
+
+def test_one_doubtful_view_is_not_enough():
+    detections = found("chair", box(0), score=0.3)
+    assert votes([box(0)], SEEN, FRAMES, [detections[0], [], []]) == [None]
+
+
+@pytest.mark.parametrize("label", ["person", "umbrella", "cat"])
+def test_what_lives_or_flies_is_not_believed(label):
+    assert votes([box(0)], SEEN, FRAMES, found(label, box(0))) == [None]
+
+
+def test_a_noun_that_the_size_forbids_is_not_believed():
+    assert votes([box(0)], SEEN, FRAMES, found("bed", box(0))) == [None]
+
+
+def test_a_hidden_box_is_not_voted_for():
+    assert votes([box(0)], np.zeros((1, 3), int), FRAMES, found("chair", box(0))) == [None]
+
+
+def test_of_rivals_the_one_that_fits_best_gets_the_vote():
+    left, right, both = box(-0.5), box(0.5), box(0, (1.6, 0.6, 0.9), points=200)
+    hits = np.array([[100] * 3, [100] * 3, [200] * 3])
+    weights = vote_weights([left, right, both], hits, FRAMES, found("couch", both))
+    assert weights[2] == pytest.approx(2.4)
+    assert weights[0] == weights[1] == 0
+
+
+# --- which boxes are believed
+
+
+def name(noun: str = UNKNOWN, source: str = "recogniser", left_over: float = 0.1) -> Name:
+    return Name(noun, source, 0.5, "", left_over)
+
+
+def test_what_looks_like_a_left_over_from_near_is_dropped_unless_the_detector_knows_it():
+    assert not is_believed(box(0), name(left_over=0.9), 1.0)
+    assert is_believed(box(0), name("chair", "detector", 0.9), 1.0)
+    assert is_believed(box(0), name(left_over=0.9), 4.0)
+
+
+def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
+    assert is_believed(box(0), name(), 1.0)
+    assert not is_believed(box(0, (0.9, 0.05, 0.6)), name(), 1.0)
+    assert not is_believed(replace(box(0, (0.9, 0.05, 2.5)), on_wall=True), name(), 1.0)
+    assert is_believed(replace(box(0, (0.9, 0.05, 0.6)), on_wall=True), name(), 1.0)
