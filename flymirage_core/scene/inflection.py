@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from flymirage_core.scene.design import PlannedObject
-from flymirage_core.scene.knowledge import nouns
+from flymirage_core.scene.knowledge import nouns, part_of
 
 ONES = [
     "no",
@@ -99,6 +99,15 @@ def attributes(colour: str, material: str, noun: str = "") -> str:
     return f"{hue} {stuff}".strip()
 
 
+def surface_words(colour: str, material: str) -> str:
+    """
+    >>> surface_words("oak brown", "oak plank"), surface_words("chalk", "plaster")
+    ('brown oak planks', 'chalk plaster')
+    """
+    words = attributes(colour, material)
+    return words + "s" if words.endswith(("plank", "tile", "panel")) else words
+
+
 def phrase(groups: Sequence[PlannedObject]) -> tuple[str, int]:
     """What is said of one or several groups of the same noun, and how many things that is.
 
@@ -112,14 +121,18 @@ def phrase(groups: Sequence[PlannedObject]) -> tuple[str, int]:
     material, size, state = (_shared(getattr(g, name) for g in groups) for name in ("material", "size", "state"))
     words = [size if size != "medium" else "", state]
     colours = list(dict.fromkeys(_hue(g.colour, g.material) for g in groups))
+    part = part_of(first.noun)
+    if part:
+        stuff = listing(colours) if material in colours else _spaced([listing(colours), material])
+        after = f" in {article(stuff)} {stuff} {part}" if total == 1 else f" in {stuff} {part}s"
+        return _counted(total, _spaced(words), first.noun) + after, total
     stuff = attributes(colours[0] if len(colours) == 1 else "", material, first.noun)
-    known = nouns().get(first.noun)
-    if known and known.finish == "frame":
-        frame = f"{stuff} frame" if total == 1 else f"{stuff} frames"
-        after = f" in {article(frame)} {frame}" if total == 1 else f" in {frame}"
-        return _counted(total, " ".join(w for w in words if w), first.noun) + after, total
     after = f" in {listing(colours)}" if len(colours) > 1 else ""
-    return _counted(total, " ".join(w for w in [*words, stuff] if w), first.noun) + after, total
+    return _counted(total, _spaced([*words, stuff]), first.noun) + after, total
+
+
+def _spaced(words: Sequence[str]) -> str:
+    return " ".join(w for w in words if w)
 
 
 def _shared(values: Iterable[str]) -> str:

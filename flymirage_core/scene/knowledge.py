@@ -92,7 +92,7 @@ class Look(Datum):
 
 
 class LightProfile(Datum):
-    """A way of lighting a place. ``words`` that begin with "+" are plural."""
+    """A way of lighting a place."""
 
     times: tuple[TimeOfDay, ...]
     skies: tuple[str, ...]
@@ -100,6 +100,7 @@ class LightProfile(Datum):
     words: tuple[str, ...]
 
 
+@cache
 def _file(name: str) -> dict[str, Any]:
     data: dict[str, Any] = json.loads(resources.files("flymirage_core.scene").joinpath(name).read_text())
     return data
@@ -115,6 +116,12 @@ def finishes() -> dict[str, dict[str, list[str]]]:
 @cache
 def _unsaid() -> frozenset[str]:
     return frozenset(_file("nouns.json")["unsaid"])
+
+
+def part_of(noun: str) -> str:
+    """The part that a noun's finish is about, if it is not the whole: a plant's pot, a painting's frame."""
+    known = nouns().get(noun)
+    return str(_file("nouns.json")["parts"].get(known.finish, "")) if known else ""
 
 
 @cache
@@ -152,6 +159,11 @@ def places() -> dict[str, Place]:
 @cache
 def looks() -> dict[str, Look]:
     return {name: Look(**fields) for name, fields in _file("places.json")["looks"].items()}
+
+
+def eras_of(style: str, look: Look) -> tuple[str, ...]:
+    """The decades in which a style was built; of a timeless one, the look's."""
+    return tuple(_file("places.json")["dated"].get(style, look.eras))
 
 
 @cache

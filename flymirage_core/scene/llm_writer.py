@@ -31,10 +31,7 @@ class ModelSceneWriter:
         self.taxonomy = taxonomy or standard_taxonomy()
         self.counts_so_far = dict(counts_so_far or {})
         self.template = load_template("flymirage_core.scene", "scene_design")
-
-    @property
-    def name(self) -> str:
-        return f"{self.model.name} (prompt {self.template.fingerprint(SceneDesign)})"
+        self.name = f"{model.name} (prompt {self.template.fingerprint(SceneDesign)})"
 
     def describe(self, scene_key: str, place: tuple[str, str] | None = None) -> SceneDescription:
         """The description of a scene; raises `SceneKeyError`, `ModerationError` if every seed was refused, and other

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from flymirage_core.scene.design import PlannedObject, SceneDesign, Zone
-from flymirage_core.scene.inflection import article, attributes, capitalised, count, phrase, things
+from flymirage_core.scene.inflection import article, capitalised, count, phrase, surface_words, things
 from flymirage_core.scene.knowledge import nouns
 
 MOST_IN_PICTURE = 9
@@ -41,7 +41,7 @@ def world_prompt(design: SceneDesign, place: str) -> str:
 
 def surfaces_of(zone: Zone) -> str:
     """As in "walls of cream plaster, a floor of light grey terrazzo, a ceiling of white plaster"."""
-    names = {s.part: attributes(s.colour, s.material) for s in zone.surfaces}
+    names = {s.part: surface_words(s.colour, s.material) for s in zone.surfaces}
     order = [part for part in ("walls", "facades", "floor", "ground", "ceiling") if part in names]
     with_article = {
         "walls": "walls",

@@ -7,19 +7,22 @@ import numpy as np
 from flymirage_core.scene.design import Light, PlannedObject, SceneDesign, Zone
 from flymirage_core.scene.furnish import pick
 from flymirage_core.scene.grammar import sentence
-from flymirage_core.scene.inflection import attributes, count, phrase, plural, things
+from flymirage_core.scene.inflection import count, phrase, plural, surface_words, things
 from flymirage_core.scene.prompts import by_noun
 
 SENTENCES = (7, 11)
 """Of a paragraph, those about things."""
 MOST_THINGS = 3
 """Kinds of things in one sentence."""
-PLURAL_MATERIALS = ("plank", "tile", "panel")
 LIGHT_PLURALS = ("patches", "pools", "bands", "rows", "lamps", "shadows")
 WALLS_OF = {"street": "facades", "courtyard": "facades", "yard": "walls", "rooftop": "parapets"}
 NOTE_SHARE = 0.8
+ANCHORED = ("around", "facing", "beside", "on_surface")
+LAST = ("on_wall", "hanging", "on_any")
+FIRST = ("against_wall", "on_floor", "in_row")
 
 Groups = list[PlannedObject]
+Key = tuple[str, str, int]
 
 
 def prose_of(design: SceneDesign, place: str, notes: Sequence[str], generator: np.random.Generator) -> str:
@@ -39,19 +42,14 @@ def _opening(design: SceneDesign, place: str, generator: np.random.Generator) ->
 
 
 def _surfaces(design: SceneDesign, generator: np.random.Generator) -> str:
-    slots = {str(s.part): _stuff(s.colour, s.material) for s in design.zones[0].surfaces}
+    slots = {str(s.part): surface_words(s.colour, s.material) for s in design.zones[0].surfaces}
     slots["z"] = count(design.zones[0].dimensions[2])
     return sentence(f"surfaces_{design.setting}", slots, False, generator)
 
 
-def _stuff(colour: str, material: str) -> str:
-    words = attributes(colour, material)
-    return words + "s" if words.endswith(PLURAL_MATERIALS) else words
-
-
 def _light(design: SceneDesign, generator: np.random.Generator) -> str:
     words = design.light.words
-    many = any(word in words.split(" ", 4)[:3] for word in LIGHT_PLURALS)
+    many = " and " in words or any(word in words.split(" ", 4)[:3] for word in LIGHT_PLURALS)
     return sentence(
         "light", {"light": words, "time": design.light.time_of_day, "when": when(design.light)}, many, generator
     )
@@ -77,20 +75,13 @@ def _objects(design: SceneDesign, generator: np.random.Generator) -> list[str]:
     return sentences
 
 
-Key = tuple[str, str, int]
-
-
 def _clusters(objects: Sequence[PlannedObject], generator: np.random.Generator) -> dict[Key, list[Groups]]:
     """(rule, anchor, number) -> the kinds of things that one sentence speaks of."""
     by_rule: dict[tuple[str, str], list[Groups]] = {}
     for groups in by_noun(objects):
-        rule, anchor = groups[0].placement, groups[0].relative_to
-        if rule == "on_surface" and not anchor:
-            by_rule.setdefault(("on_any", ""), []).append(groups)
-        else:
-            by_rule.setdefault(
-                (rule, anchor if rule in ("around", "facing", "beside", "on_surface") else ""), []
-            ).append(groups)
+        first = groups[0]
+        rule = "on_any" if first.placement == "on_surface" and not first.relative_to else first.placement
+        by_rule.setdefault((rule, first.relative_to if rule in ANCHORED else ""), []).append(groups)
     clusters: dict[Key, list[Groups]] = {}
     for (rule, anchor), found in by_rule.items():
         shuffled = [found[int(i)] for i in generator.permutation(len(found))]
@@ -100,10 +91,6 @@ def _clusters(objects: Sequence[PlannedObject], generator: np.random.Generator) 
             clusters[rule, anchor, number] = shuffled[:size]
             shuffled, number = shuffled[size:], number + 1
     return clusters
-
-
-FIRST = ("against_wall", "on_floor", "in_row")
-LAST = ("on_wall", "hanging", "on_any")
 
 
 def _order(keys: list[Key], generator: np.random.Generator) -> list[Key]:

@@ -21,8 +21,8 @@ def test_words_are_inflected():
     assert listing(["a", "b", "c"]) == "a, b and c"
 
 
-def test_every_noun_has_a_plural_that_differs_from_it():
-    assert all(plural(noun) != noun for noun in nouns())
+def test_every_noun_has_a_plural_that_differs_from_it_but_aircraft():
+    assert [noun for noun in nouns() if plural(noun) == noun] == ["light aircraft"]
 
 
 @pytest.mark.parametrize(
