@@ -374,7 +374,7 @@ def _next_to(anchor: PlacedObject, size: Size, rng: np.random.Generator) -> Iter
     axes, middle = anchor.axes, np.asarray(anchor.centre[:2])
     for n in range(TRIES // 4):
         side = (-1, 1)[int(rng.integers(2))]
-        right = side * (anchor.size[0] / 2 + size[0] / 2 + rng.uniform(0.06, 0.25 + 0.02 * n))
+        right = side * (anchor.size[0] / 2 + size[0] / 2 + rng.uniform(0.06, 0.25 + 0.01 * n))
         back = (size[1] - anchor.size[1]) / 2
         if n > TRIES // 8:
             right, back = (

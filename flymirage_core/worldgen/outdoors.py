@@ -42,6 +42,8 @@ SIDEWALK = 1.7
 BEYOND = 46.0
 """Metres from the origin to the sky dome; all that is seen lies within it."""
 HILLS = 40.0
+RINGS = (2.5, 5.0, 8.0, 14.0, 60.0)
+"""Metres: widths of the frames of ground."""
 ROW_BEYOND = 20.0
 """Metres by which the houses of a street go on past its ends."""
 HOUSE_DEPTH = 6.0
@@ -80,7 +82,8 @@ def beyond(place: Place, daylight: float, rng: np.random.Generator) -> list[Stru
         if main.zone.kind in ("yard", "street")
         else dressed("grey", "asphalt", 1)
     )
-    parts = _ring(place, replace(ground, detail=1.6, wear=0.0), floor)
+    hidden = main.zone.kind in ("street", "courtyard")  # behind facades
+    parts = _ring(place, replace(ground, detail=6.0 if hidden else 1.6, wear=0.0), floor)
     parts.append(_hills(place, look, floor))
     things = [Structure(parts)]
     if main.zone.kind == "street":
@@ -338,16 +341,20 @@ def _under(line: Float) -> tuple[Solid, ...]:
 
 
 def _ring(place: Place, material: Material, z: float) -> list[Part]:
-    """Ground round the spaces' bounds out to the dome, in four sheets."""
+    """Ground round the spaces' bounds out to the dome, in frames one round the other, cut coarser outwards."""
     low, high = place.bounds[0, :2], place.bounds[1, :2]
-    far = BEYOND + 2
-    rectangles = [
-        ((-far, -far), (far, low[1])), ((-far, high[1]), (far, far)),
-        ((-far, low[1]), (low[0], high[1])), ((high[0], low[1]), (far, high[1])),
-    ]  # fmt: skip
+    parts = []
+    for out in RINGS:
+        outer = np.minimum(low, np.maximum(low - out, -BEYOND)), np.maximum(high, np.minimum(high + out, BEYOND))
+        (x0, y0), (x1, y1), (u0, v0), (u1, v1) = *outer, low, high
+        corners = [((x0, y0), (x1, v0)), ((x0, v1), (x1, y1)), ((x0, v0), (u0, v1)), ((u1, v0), (x1, v1))]
+        parts += [
+            _flat(np.array(a), np.array(b), z, material) for a, b in corners if min(b[0] - a[0], b[1] - a[1]) > 0.01
+        ]
+        low, high = outer
     if z < -1:
-        rectangles = [((-far, -far), (far, far))]
-    return [_flat(np.array(a), np.array(b), z, material) for a, b in rectangles]
+        parts.append(_flat(*place.bounds[:, :2], z, material))
+    return parts
 
 
 def _hills(place: Place, look: Look, floor: float) -> Part:
@@ -360,7 +367,7 @@ def _hills(place: Place, look: Look, floor: float) -> Part:
     radius = HILLS + 3.5 * rows[:, None]
     grid[..., 0], grid[..., 1] = radius * np.cos(angle), radius * np.sin(angle)
     grid[..., 2] = floor + rows[:, None] * (top - min(floor, 0.0) * 0.4)
-    return Part(Patch(grid), Material((0.12, 0.17, 0.11), "leaf", seed=look.seed, detail=0.6))
+    return Part(Patch(grid), Material((0.12, 0.17, 0.11), "leaf", seed=look.seed))
 
 
 def _street_goes_on(street: Space, look: Look, rng: np.random.Generator) -> list[Structure]:
@@ -369,6 +376,9 @@ def _street_goes_on(street: Space, look: Look, rng: np.random.Generator) -> list
     things = []
     for sign in (-1, 1):
         end = street.high[along] if sign > 0 else street.low[along]
+        low, high = street.low.copy(), street.high.copy()
+        low[along], high[along] = sorted((end, end + sign * ROW_BEYOND))
+        things.append(Structure([_flat(low, high, 0.0, replace(finish(street.zone, "ground", look.seed), detail=1.4))]))
         for side in (-1, 1):
             face = street.high[across] if side > 0 else street.low[across]
             a, b = np.empty(2), np.empty(2)

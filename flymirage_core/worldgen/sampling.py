@@ -36,6 +36,8 @@ FLOWN: Final = np.array([13.0, 13.0, 3.2])
 """Metres from c: drones rarely fly further; what lies beyond is cut coarser, by `COARSER` for each metre."""
 COARSER: Final = 0.11
 COARSEST: Final = 6.0
+RING: Final = 200
+"""Surfaces of more points than this may be rings round everything: their nearest point counts, not their bounds."""
 COVER: Final = 0.045
 """Metres: what has a surface this close before it cannot be seen."""
 FLUSH: Final = 0.02
@@ -159,11 +161,12 @@ def _cut(things: list[Thing], factors: list[list[float]], spacing: float) -> lis
 
 def _coarseness(part: Part, thing: Thing, assembly: Assembly) -> float:
     """Factor on the spacing of a part: small things finer, far ones coarser."""
-    corners = corners_of(part)
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    corners = corners_of(part)  # (V, 3)
+    pieces = corners if len(corners) > RING else np.array([corners.min(axis=0), corners.max(axis=0)])[None]
+    low, high = (pieces, pieces) if pieces.ndim == 2 else (pieces[:, 0], pieces[:, 1])
     off = np.maximum(np.maximum(low - assembly.truth.centre - FLOWN, assembly.truth.centre - FLOWN - high), 0.0)
-    off[2] = max(low[2] - FLOWN[2] - 0.8, -1.0 - high[2], 0.0)
-    far = min(1 + COARSER * float(np.linalg.norm(off)), COARSEST)
+    off[:, 2] = np.maximum(np.maximum(low[:, 2] - FLOWN[2] - 0.8, -1.0 - high[:, 2]), 0.0)
+    far = min(1 + COARSER * float(np.linalg.norm(off, axis=1).min()), COARSEST)
     if thing.object_id < 0:
         return far
     size = max(assembly.truth.objects[thing.object_id].size)

@@ -139,7 +139,7 @@ def test_what_faces_a_thing_looks_at_it_and_what_is_beside_it_is_near(key):
             way = np.subtract(sofa.centre, o.centre)[:2]
             assert o.axes[1] @ way / np.linalg.norm(way) > 0.8
         if o.placement == "beside":
-            assert sofa.solid.distance_to(o.centre) < 1.0
+            assert sofa.solid.distance_to(o.centre) < 1.2
         if o.placement == "around" and o.noun == "dining chair":
             table = next(t for t in truth.objects if t.noun == "dining table")
             assert o.axes[1] @ np.subtract(table.centre, o.centre)[:2] > 0
