@@ -59,6 +59,8 @@ BY_SIZE = (
     Superlative.HIGHEST,
     Superlative.LOWEST,
 )
+TELLING_SHAPES = (Shape.TALL, Shape.LOW, Shape.LONG)
+"""Of things with a name: every picture is thin, and hardly anybody calls an armchair boxy."""
 BY_PLACE = (Superlative.NEAREST, Superlative.LEFTMOST, Superlative.RIGHTMOST, Superlative.FARTHEST)
 RELATIONS_BY_SENSE = (
     Relation.ON,
@@ -212,13 +214,13 @@ class _Description:
 
 
 def _looks(box: ObjectBox) -> list[Term]:
-    """What is seen on the box itself: colour, material, shapes."""
+    """What is seen on the box itself: colour, material, shapes; of a thing with a name only those it might not have."""
     looks: list[Term] = [Colour(box.colour)] if box.colour else []
     looks += [Material(box.material)] if box.material else []
     shapes = [shape for shape in Shape if shaped(shape, box) is Truth.YES]
     if Shape.SLIM in shapes and Shape.TALL in shapes:
         shapes.remove(Shape.SLIM)
-    return looks + [Shaped(shape) for shape in shapes]
+    return looks + [Shaped(shape) for shape in shapes if is_generic(box.label) or shape in TELLING_SHAPES]
 
 
 def _landmark_phrase(box: ObjectBox, resolver: Resolver) -> Meaning | None:
