@@ -6,9 +6,11 @@ from flymirage_core.worldgen import shapes_decor as decor
 from flymirage_core.worldgen import shapes_furniture as furniture
 from flymirage_core.worldgen import shapes_household as household
 from flymirage_core.worldgen import shapes_industrial as industrial
+from flymirage_core.worldgen import shapes_overhead as overhead
 from flymirage_core.worldgen import shapes_plants as plants
 from flymirage_core.worldgen import shapes_power as power
 from flymirage_core.worldgen import shapes_street as street
+from flymirage_core.worldgen import shapes_structure as structure
 from flymirage_core.worldgen import shapes_tabletop as tabletop
 from flymirage_core.worldgen import shapes_utility as utility
 from flymirage_core.worldgen import shapes_vehicles as vehicles
@@ -351,6 +353,47 @@ KINDS: dict[str, Kind] = {
     "balcony": kind(wall.balcony, (2.2, 3.0), (1.0, 1.2), (1.25, 1.4), ("charcoal", "wrought iron")),
     "window box": kind(wall.window_box, (0.85, 1.2), (0.26, 0.32), (0.38, 0.46), ("terracotta", "clay")),
     "row of coat hooks": kind(wall.coat_hooks, (0.8, 1.1), (0.13, 0.16), (0.42, 0.52), ("oak brown", "oak")),
+    # from the ceiling; z is from the ceiling down
+    "chandelier": round_kind(overhead.chandelier, (0.8, 1.1), (0.75, 1.0), ("brass", "brass")),
+    "paper lantern": round_kind(overhead.paper_lantern, (0.44, 0.56), (0.55, 0.75), ("ivory", "paper")),
+    "ceiling fan": round_kind(overhead.ceiling_fan, (1.2, 1.4), (0.4, 0.5), ("walnut brown", "walnut")),
+    "beam": kind(overhead.beam, (3.0, 5.0), (0.18, 0.26), (0.24, 0.34), ("walnut brown", "oak")),
+    "duct": kind(overhead.duct, (2.4, 3.4), (0.42, 0.52), (0.46, 0.58), ("silver", "galvanised steel")),
+    "cable bundle": kind(overhead.cable_bundle, (2.2, 3.0), (0.18, 0.24), (0.4, 0.55), ("black", "rubber")),
+    "chain hoist": kind(overhead.chain_hoist, (0.36, 0.42), (0.26, 0.32), (1.2, 1.5), ("yellow", "painted steel")),
+    "projector": kind(overhead.projector, (0.36, 0.42), (0.32, 0.38), (0.4, 0.5), ("white", "plastic")),
+    "hanging sign": kind(overhead.hanging_sign, (1.2, 1.7), (0.1, 0.14), (0.55, 0.7), ("charcoal", "painted steel")),
+    "banner": kind(overhead.banner, (0.8, 1.1), (0.05, 0.07), (1.4, 1.8), ("burgundy", "cotton")),
+    "lighting truss": kind(overhead.lighting_truss, (2.6, 3.6), (0.34, 0.42), (0.6, 0.7), ("silver", "aluminium")),
+    "mirror ball": round_kind(overhead.mirror_ball, (0.38, 0.46), (0.65, 0.8), ("silver", "glass")),
+    "busbar": kind(overhead.busbar, (2.2, 3.0), (0.28, 0.34), (0.36, 0.46), ("slate grey", "steel")),
+    "jet fan": kind(overhead.jet_fan, (1.8, 2.2), (0.66, 0.76), (0.76, 0.9), ("light grey", "steel")),
+    "punching bag": round_kind(overhead.punching_bag, (0.36, 0.42), (1.3, 1.5), ("red", "vinyl")),
+    "hanging chair": round_kind(overhead.hanging_chair, (0.86, 0.96), (1.7, 2.0), ("tan", "rattan")),
+    "model aeroplane": kind(overhead.model_aeroplane, (1.1, 1.3), (0.92, 1.05), (0.5, 0.65), ("red", "painted wood")),
+    "exit sign": kind(overhead.exit_sign, (0.44, 0.54), (0.06, 0.08), (0.26, 0.32), ("green", "plastic")),
+    "string of lights": kind(overhead.string_of_lights, (2.6, 3.4), (0.06, 0.08), (0.35, 0.5), ("black", "rubber")),
+    # structures, yards, playgrounds
+    "ladder": kind(structure.ladder, (0.45, 0.52), (0.42, 0.55), (2.0, 2.5), ("silver", "aluminium")),
+    "pallet": kind(structure.pallet, (1.15, 1.25), (0.78, 0.85), (0.14, 0.16), ("tan", "pine wood")),
+    "staircase": kind(structure.staircase, (1.0, 1.2), (2.8, 3.2), (2.7, 3.0), ("slate grey", "painted steel")),
+    "mezzanine": kind(structure.mezzanine, (3.4, 4.4), (2.2, 2.7), (3.2, 3.7), ("slate grey", "painted steel")),
+    "stage": kind(structure.stage, (3.6, 4.6), (2.6, 3.2), (0.55, 0.7), ("oak brown", "oak")),
+    "drum": round_kind(structure.steel_drum, (0.56, 0.62), (0.85, 0.95), ("blue", "painted steel")),
+    "welding curtain": kind(structure.welding_curtain, (1.6, 2.0), (0.4, 0.5), (1.8, 2.0), ("orange", "vinyl")),
+    "loom": kind(structure.loom, (1.65, 1.9), (1.6, 1.8), (1.5, 1.7), ("honey brown", "oak")),
+    "street sign": kind(structure.street_sign, (0.55, 0.65), (0.1, 0.12), (2.5, 2.8), ("slate grey", "galvanised steel")),
+    "motorcycle": kind(structure.motorcycle, (0.76, 0.84), (1.95, 2.15), (1.15, 1.25), ("burgundy", "painted steel")),
+    "scaffolding": kind(structure.scaffolding, (2.2, 3.4), (1.0, 1.2), (3.4, 4.6), ("silver", "galvanised steel")),
+    "pergola": kind(structure.pergola, (2.6, 3.4), (2.4, 2.8), (2.4, 2.6), ("caramel", "pine wood")),
+    "swing": kind(structure.swing, (2.3, 2.6), (1.3, 1.5), (2.1, 2.3), ("forest green", "painted steel")),
+    "slide": kind(structure.slide, (0.62, 0.8), (2.6, 3.0), (1.9, 2.1), ("yellow", "plastic")),
+    "climbing frame": round_kind(structure.climbing_frame, (2.1, 2.5), (1.8, 2.1), ("red", "painted steel")),
+    "brick pile": kind(structure.brick_pile, (1.0, 1.15), (0.82, 0.95), (0.6, 0.75), ("brick red", "brick")),
+    "clothesline": kind(structure.clothesline, (2.4, 2.7), (1.0, 1.2), (1.8, 2.0), ("white", "cotton")),
+    "chimney": round_kind(structure.chimney, (0.75, 0.9), (1.9, 2.2), ("brick red", "brick")),
+    "boat": kind(structure.boat, (1.55, 1.75), (4.0, 4.5), (1.7, 2.0), ("blue", "painted wood")),
+    "luggage cart": kind(structure.luggage_cart, (1.4, 1.6), (2.8, 3.2), (1.3, 1.45), ("yellow", "painted steel")),
 }  # fmt: skip
 
 UNKNOWN = _kind(utility.plain_box, (0.4, 0.7), (0.35, 0.5), (0.4, 0.7))
