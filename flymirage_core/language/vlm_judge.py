@@ -1,6 +1,5 @@
 """`VlmJudge`: the measured gates first, then a vision-language model on what passed them (paper, section III-C)."""
 
-from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Self
@@ -73,10 +72,9 @@ class VlmJudge:
     def judge(self, frames: Frames, flights: Trajectories, boxes: BoxMap) -> QualityVerdicts:
         """One verdict for each flight, in their order; raises `ProductError` and `ServiceError`s."""
         measured = self.measured.judge(frames, flights, boxes)
-        pairs = list(zip(measured, flights, strict=True))
         with ThreadPoolExecutor(self.at_once) as pool:
-            verdicts = pool.map(lambda pair: self._judged(*pair, frames, boxes), pairs)
-            return QualityVerdicts(tuple(_tracked(verdicts, len(pairs))))
+            verdicts = pool.map(lambda v, flight: self._judged(v, flight, frames, boxes), measured, flights)
+            return QualityVerdicts(tuple(track(verdicts, "verdicts", len(measured))))
 
     def _judged(self, verdict: Verdict, flight: Flight, frames: Frames, boxes: BoxMap) -> Verdict:
         if not verdict.keep:
@@ -98,7 +96,3 @@ class VlmJudge:
             return self.model.answer(question, VlmVerdict).gates()
         except ModerationError as refusal:
             return (GateResult("vlm_refused", 0.0, 1.0, False, f"the model refused to look at it: {refusal}"),)
-
-
-def _tracked(verdicts: Iterable[Verdict], total: int) -> Iterable[Verdict]:
-    return track(verdicts, "verdicts", total)

@@ -89,6 +89,17 @@ class Endpoint:
         """Ask for something that costs nothing; tried again after network and server errors."""
         return self._free("GET", path, None)
 
+    def get_once(self, path: str) -> httpx.Response:
+        """As `get`, but the first failure counts: for looking how things are."""
+        key = self.key()
+        try:
+            response = self._request("GET", path, None, key)
+        except httpx.HTTPError as error:
+            raise self._unreachable(error) from None
+        if response.status_code >= 300:
+            raise self._refusal(response, key)
+        return response
+
     def post_free(self, path: str, body: Any) -> httpx.Response:
         """A POST that costs nothing and changes nothing that matters."""
         return self._free("POST", path, body)

@@ -53,6 +53,7 @@ class FakeService:
         self.requests: list[Request] = []
         self.faults: list[Fault] = []
         self.lock = threading.RLock()
+        self.clock_skew = 0.0  # of the Date header, seconds
         self.clock: Callable[[], float] = time.time
         self._server = ThreadingHTTPServer(("127.0.0.1", 0), self._handler())
         self._server.daemon_threads = True
@@ -127,6 +128,9 @@ class FakeService:
                     self.close_connection = True
 
             do_GET = do_POST = do_PUT = do_DELETE = do_HEAD = _serve  # noqa: N815
+
+            def date_time_string(self, timestamp: float | None = None) -> str:
+                return super().date_time_string((timestamp or time.time()) + service.clock_skew)
 
             def log_message(self, *_: object) -> None:
                 return
