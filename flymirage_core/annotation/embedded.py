@@ -40,7 +40,7 @@ from flymirage_core.annotation.segmentation import (
     smoothed_colours,
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
-from flymirage_core.annotation.wall_objects import wall_objects
+from flymirage_core.annotation.wall_objects import ceiling_objects, wall_objects
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
 from flymirage_core.rendering.views import View
 from flymirage_core.settings import AnnotationSettings
@@ -144,7 +144,8 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     merge_parts(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
     boxes = [box for box in boxes if is_thing(box, structure)]
-    boxes += wall_objects(cloud.points, shading_free(to_lab(cloud.colours)), structure)
+    colours = shading_free(to_lab(cloud.colours))
+    boxes += wall_objects(cloud.points, colours, structure) + ceiling_objects(cloud.points, colours, structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)
     return sorted(boxes, key=lambda b: (round(b.bottom, 2), b.centre))
 

@@ -1,5 +1,6 @@
-"""Flat things on walls (pictures, mirrors, screens, boards, windows), found by colour in a raster of each wall."""
+"""Flat things on walls (pictures, mirrors, screens, boards) and ceilings (lights), found by colour in a raster."""
 
+from collections.abc import Iterator
 from typing import Final
 
 import numpy as np
@@ -13,11 +14,17 @@ from flymirage_core.annotation.colours import colour_step
 from flymirage_core.annotation.room_structure import RoomStructure, Wall
 
 Float32 = NDArray[np.float32]
+Float64 = NDArray[np.float64]
 
 CELL: Final = 0.04
 """Metres; cells of a wall's raster."""
 MAX_DEPTH: Final = 0.07
 """Metres before or behind the wall's plane; what stands out further is a thing of its own."""
+MAX_CEILING_DEPTH: Final = 0.12
+"""Metres below the ceiling; what reaches lower hangs."""
+MAX_LIGHT: Final = 2.0
+MIN_POINTS: Final = 200
+"""Of a wall or ceiling, for it to be looked at."""
 MAX_PAINT_STEP: Final = 3.0
 """Colour step between neighbouring cells up to which both are bare wall."""
 MIN_BARE_SHARE: Final = 0.3
@@ -45,34 +52,64 @@ def wall_objects(points: Float32, colours: Float32, structure: RoomStructure) ->
     found = []
     for wall in structure.walls:
         members = np.flatnonzero(wall.contains(points) & (np.abs(wall.distance(points)) < MAX_DEPTH))
-        if len(members) >= 200:
+        if len(members) >= MIN_POINTS:
             found += _on_wall(wall, members, points[members], colours[members], structure.floor)
     return found
 
 
-def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Float32, floor: float) -> list[FittedBox]:
-    along, height, depth = points[:, :2] @ wall.direction, points[:, 2], wall.distance(points)
-    origin = np.array([along.min(), height.min()])
-    column = ((along - origin[0]) / CELL).astype(int)
-    row = ((height - origin[1]) / CELL).astype(int)
-    seen, image = _raster(row, column, colours, (int(row.max()) + 1, int(column.max()) + 1))
-    regions = _things(seen, image)
+def ceiling_objects(points: Float32, colours: Float32, structure: RoomStructure) -> list[FittedBox]:
+    """Boxes of flat things under the ceiling that differ from it in colour: light panels, vents; arguments as above."""
+    if structure.ceiling_map is None:
+        return []
+    depth = structure.ceiling_map.at(points) - points[:, 2]
+    members = np.flatnonzero((depth < MAX_CEILING_DEPTH) & (depth > -MAX_DEPTH))
+    if len(members) < MIN_POINTS:
+        return []
+    c, s = np.cos(structure.yaw), np.sin(structure.yaw)
+    axes = np.array([[c, s], [-s, c]])
+    along, across = (points[members, :2] @ axis for axis in axes)
     boxes = []
-    for k in range(1, regions.max() + 1):
-        rows, columns = np.nonzero(regions == k)
-        (y, x), (h, w) = (rows.min(), columns.min()), (np.ptp(rows) + 1, np.ptp(columns) + 1)
-        bottom = float(origin[1] + y * CELL)
-        if not _is_flat_thing(w * CELL, h * CELL, len(rows) * CELL**2, bottom - floor):
+    for mine, (x, y), (w, h) in _flat_things(along, across, colours[members]):
+        if min(w, h) < MIN_SIDE or max(w, h) > MAX_LIGHT:
             continue
-        mine = regions[row, column] == k
+        xy = np.array([x + w / 2, y + h / 2]) @ axes
+        around = xy + max(w, h) * np.array([[1, 1], [1, -1], [-1, 1], [-1, -1]])
+        top = float(structure.ceiling_map.at(around).max())  # over the thing itself the map is the thing
+        bottom = min(top - MIN_THICKNESS, float(np.percentile(points[members[mine], 2], 100 - FRONT_PERCENTILE)))
+        centre = (float(xy[0]), float(xy[1]), (top + bottom) / 2)
+        boxes.append(FittedBox(centre, (w, h, top - bottom), structure.yaw, members[mine], hanging=True))
+    return boxes
+
+
+def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Float32, floor: float) -> list[FittedBox]:
+    along, depth = points[:, :2] @ wall.direction, wall.distance(points)
+    boxes = []
+    for mine, (x, bottom), (w, h) in _flat_things(along, points[:, 2], colours):
+        if min(w, h) > MAX_SHORT_SIDE or (bottom - floor < MIN_HEIGHT and h < MIN_TALL):
+            continue
         front = wall.offset + float(np.percentile(depth[mine], FRONT_PERCENTILE))
         thickness = max(MIN_THICKNESS, front - wall.back)
-        xy = wall.normal * (wall.back + thickness / 2) + wall.direction * (origin[0] + (x + w / 2) * CELL)
+        xy = wall.normal * (wall.back + thickness / 2) + wall.direction * (x + w / 2)
         yaw = float(np.arctan2(wall.direction[1], wall.direction[0]))
-        centre = (float(xy[0]), float(xy[1]), bottom + h * CELL / 2)
-        size = (w * CELL, thickness, h * CELL)
-        boxes.append(FittedBox(centre, size, yaw, members[mine], on_wall=True))
+        centre = (float(xy[0]), float(xy[1]), bottom + h / 2)
+        boxes.append(FittedBox(centre, (w, thickness, h), yaw, members[mine], on_wall=True))
     return boxes
+
+
+def _flat_things(
+    x: Float64 | Float32, y: Float64 | Float32, colours: Float32
+) -> Iterator[tuple[NDArray[np.bool_], tuple[float, float], tuple[float, float]]]:
+    """Of points at (x, y) (N,) metres in a plane, for each thing: which are its, its lowest corner, its sides."""
+    origin = np.array([x.min(), y.min()])
+    column, row = ((x - origin[0]) / CELL).astype(int), ((y - origin[1]) / CELL).astype(int)
+    seen, image = _raster(row, column, colours, (int(row.max()) + 1, int(column.max()) + 1))
+    regions = _things(seen, image)
+    for k in range(1, regions.max() + 1):
+        rows, columns = np.nonzero(regions == k)
+        corner = float(origin[0] + columns.min() * CELL), float(origin[1] + rows.min() * CELL)
+        sides = float((np.ptp(columns) + 1) * CELL), float((np.ptp(rows) + 1) * CELL)
+        if len(rows) * CELL**2 >= max(MIN_AREA, MIN_FILL * sides[0] * sides[1]) and min(sides) >= MIN_SIDE:
+            yield regions[row, column] == k, corner, sides
 
 
 def _raster(
@@ -118,8 +155,3 @@ def _bare_regions(seen: NDArray[np.bool_], labels: NDArray[np.int32]) -> list[in
         if counts.max() >= MIN_BARE_SHARE * counts.sum():
             bare.append(int(found[counts.argmax()]))
     return bare
-
-
-def _is_flat_thing(width: float, height: float, area: float, clearance: float) -> bool:
-    sizes = area >= MIN_AREA and min(width, height) >= MIN_SIDE and min(width, height) <= MAX_SHORT_SIDE
-    return sizes and area >= MIN_FILL * width * height and (clearance >= MIN_HEIGHT or height >= MIN_TALL)
