@@ -98,6 +98,7 @@ def kill_rounds(folder: Path, wanted: int, expected: dict[str, str], usual: floa
         counts["scenes grown"] += 1
         counts["final hashes equal"] += digests(scene, "scene-0001") == expected
         counts["exit codes other than 0"] += process.returncode != 0
+        print(f"    so far: {counts['kills']} kills, {counts['scenes grown']} scenes", flush=True)
         shutil.rmtree(scene)
     return counts
 

@@ -59,6 +59,7 @@ def rebuild(settings: Settings, keys: list[str], what: str) -> None:
         print(f"    {name:20s} {outcome:10s} {count} scenes")
     if not outcomes:
         print("    nothing was made")
+    sys.stdout.flush()
 
 
 def _made(settings: Settings, asset: str, scene: str) -> list[str]:

@@ -2,6 +2,7 @@
 
 import operator
 from dataclasses import dataclass
+from typing import Any
 
 import dagster as dg
 
@@ -54,7 +55,7 @@ def check_results(commit: Commit, store: Store) -> list[dg.AssetCheckResult]:
     if commit.returns is None:
         return []
     problem = _unreadable(commit, store)
-    numbers = {"files": len(record.files), "bytes": record.bytes, "problem": problem or "none"}
+    numbers: dict[str, Any] = {"files": len(record.files), "bytes": record.bytes, "problem": problem or "none"}
     results = [dg.AssetCheckResult(passed=not problem, check_name=WHOLE, metadata=numbers)]
     if (expected := EXPECTED.get(record.asset)) is not None:
         value = record.summary.get(expected.number, 0)

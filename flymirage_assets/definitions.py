@@ -38,7 +38,7 @@ def build_definitions(settings: Settings) -> dg.Definitions:
         description="Trajectories and what follows from them; what is up to date costs nothing.",
         tags=limit,
     )
-    report_job = dg.define_asset_job("growth_report", dg.AssetSelection.assets(*report))
+    report_job = dg.define_asset_job("report_night", dg.AssetSelection.assets(*report))
     return dg.Definitions(
         assets=[*scene_assets, *over_all, *report],
         jobs=[

@@ -1,11 +1,15 @@
 """Who runs the stages of a run. The engines are Dagster's own; the extras bring them."""
 
 import os
+from typing import cast
 
 import dagster as dg
 
 from flymirage_core.errors import InputError
 from flymirage_core.settings import Settings
+
+RAY_ENVIRONMENT = ["DAGSTER_HOME", "FLYMIRAGE_STORE", "FLYMIRAGE_EXECUTOR"]
+"""What Ray's jobs need of this process's environment; keys come from the cluster's own."""
 
 
 def executor_of(settings: Settings) -> dg.ExecutorDefinition:
@@ -16,11 +20,12 @@ def executor_of(settings: Settings) -> dg.ExecutorDefinition:
         if settings.executor == "celery":
             from dagster_celery import celery_executor
 
-            return celery_executor.configured(_celery_config())
+            return cast(dg.ExecutorDefinition, celery_executor.configured(_celery_config()))
         if settings.executor == "ray":
             from dagster_ray import ray_executor
 
-            return ray_executor.configured({"ray": {"address": os.environ.get("RAY_ADDRESS", "auto"), "num_cpus": 1}})
+            ray = {"address": os.environ.get("RAY_ADDRESS", "auto"), "num_cpus": 1, "env_vars": RAY_ENVIRONMENT}
+            return cast(dg.ExecutorDefinition, ray_executor.configured({"ray": ray}))
     except ImportError as error:
         raise InputError(
             f"executor {settings.executor!r} needs the package {error.name!r}: pip install "
@@ -30,10 +35,6 @@ def executor_of(settings: Settings) -> dg.ExecutorDefinition:
 
 
 def _celery_config() -> dict[str, object]:
-    """Broker and results where ``CELERY_BROKER_URL`` says; a task whose worker is lost goes to another one."""
+    """Broker and results where ``CELERY_BROKER_URL`` says; workers read deploy/dagster_celery_config.py."""
     broker = os.environ.get("CELERY_BROKER_URL", "redis://localhost:6379/0")
-    return {
-        "broker": broker,
-        "backend": os.environ.get("CELERY_RESULT_BACKEND", broker),
-        "config_source": {"task_acks_late": True, "task_reject_on_worker_lost": True, "worker_prefetch_multiplier": 1},
-    }
+    return {"broker": broker, "backend": os.environ.get("CELERY_RESULT_BACKEND", broker)}

@@ -26,8 +26,8 @@ class one_clear_sentence:  # noqa: N801 - reads as what it does at the place of 
             raise dg.Failure(description=str(error), metadata=metadata, allow_retries=False) from error
         if isinstance(error, OSError) and error.errno in NO_RETRY:
             raise dg.Failure(
-                description=f"{error.filename} cannot be written: {NO_RETRY[error.errno]}; make room or set "
-                "FLYMIRAGE_STORE, then run the command again: it carries on from here",
+                description=f"{error.filename or 'the store'} cannot be written: {NO_RETRY[error.errno]}; make room or "
+                "set FLYMIRAGE_STORE, then run the command again: it carries on from here",
                 allow_retries=False,
             ) from error
         if isinstance(error, Exception) and not isinstance(error, dg.Failure):

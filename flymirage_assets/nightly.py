@@ -62,7 +62,7 @@ def nightly_schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
                 tags={} if origin is None else scene_tags(origin),
             )
 
-    @dg.schedule(job_name="growth_report", cron_schedule=growth.sweep_cron, **common)
+    @dg.schedule(job_name="report_night", cron_schedule=growth.sweep_cron, **common)
     def nightly_report(context: dg.ScheduleEvaluationContext) -> dg.RunRequest:
         """What came of the night: grown, failed, dropped, spent."""
         night = _night(context).isoformat()
