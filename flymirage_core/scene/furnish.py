@@ -24,7 +24,7 @@ STATE_SHARE = 0.3
 """Of the groups of things that have visible states, how many are in one."""
 SIZE_SHARES = (("small", 0.15), ("medium", 0.7), ("large", 0.15))
 FILLER_TRIES = 400
-FILLER_MOST = 8
+FILLER_MOST = 5
 """Of one noun in a zone, as far as fillers go."""
 ORDER: tuple[Placement, ...] = ("on_surface", "on_wall", "on_floor", "against_wall", "hanging", "in_row")
 
@@ -103,7 +103,7 @@ def fill_zone(
         for row in sorted(rows, key=_relates):
             budget.add(row.want, int(generator.integers(row.least, row.most + 1)))
     choices = fillers()[filler]
-    for _ in range(FILLER_TRIES if choices else 0):
+    for _ in range(FILLER_TRIES):
         if sum(budget.wants.values()) >= wanted:
             break
         noun = str(pick(generator, choices))

@@ -126,26 +126,23 @@ def part_of(noun: str) -> str:
 
 @cache
 def nouns() -> dict[str, Noun]:
-    """All nouns that the writer may use: those that the embedded world can build."""
-    data = _file("nouns.json")
-    return {name: Noun(**fields) for name, fields in data["nouns"].items() if name not in data["awaited"]}
+    """All nouns that the writer uses. The embedded world can build each (tests/scene/test_scene_nouns.py)."""
+    return {name: Noun(**fields) for name, fields in _file("nouns.json")["nouns"].items()}
 
 
 @cache
 def kits() -> dict[str, tuple[Row, ...]]:
-    """Kit -> its rows; rows of nouns that cannot be built are left out."""
-    every = set(_file("nouns.json")["nouns"])
-    rows = {name: [_row(text, every) for text in texts] for name, texts in _file("kits.json")["kits"].items()}
-    return {name: tuple(r for r in found if r.want.noun in nouns()) for name, found in rows.items()}
+    """Kit -> its rows."""
+    return {name: tuple(_row(text) for text in texts) for name, texts in _file("kits.json")["kits"].items()}
 
 
-def _row(text: str, known: set[str]) -> Row:
+def _row(text: str) -> Row:
     """ "2-3 armchair facing coffee table" """
     span, *words = text.split()
     least, most = (int(n) for n in span.split("-"))
     for i in range(1, len(words)):
         noun, placement, anchor = " ".join(words[:i]), words[i], " ".join(words[i + 1 :])
-        if noun in known and placement in get_args(Placement) and (not anchor or anchor in known):
+        if noun in nouns() and placement in get_args(Placement) and (not anchor or anchor in nouns()):
             return Row(least, most, Want(noun, placement, anchor))  # type: ignore[arg-type]
     raise ValueError(f"kit row {text!r}: expected least-most, a known noun, a placement and perhaps another noun")
 
@@ -174,4 +171,4 @@ def lights() -> dict[str, LightProfile]:
 @cache
 def fillers() -> dict[str, tuple[str, ...]]:
     """Name -> nouns that may be added until a place is full."""
-    return {name: tuple(n for n in found if n in nouns()) for name, found in _file("places.json")["fillers"].items()}
+    return {name: tuple(found) for name, found in _file("places.json")["fillers"].items()}

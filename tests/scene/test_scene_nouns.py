@@ -1,24 +1,15 @@
 """The writer's nouns and the catalogue that builds them: the two rooms do not know each other, this test does."""
 
-import json
-from importlib import resources
-
 import numpy as np
 
 from flymirage_core.scene.knowledge import fillers, finishes, kits, nouns
 from flymirage_core.worldgen.catalogue import KINDS
 from flymirage_core.worldgen.colours import NAMED
 
-DATA = json.loads(resources.files("flymirage_core.scene").joinpath("nouns.json").read_text())
-
 
 def test_everything_that_the_writer_may_ask_for_can_be_built():
     assert set(nouns()) <= set(KINDS)
     assert len(nouns()) >= 150
-
-
-def test_what_can_be_built_is_no_longer_awaited():
-    assert not set(DATA["awaited"]) & set(KINDS)
 
 
 def test_small_things_stand_on_what_has_a_top():
