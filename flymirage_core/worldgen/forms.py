@@ -37,8 +37,9 @@ def spun(part: Part, count: int, start: float = 0.0) -> list[Part]:
 
 
 def mirrored(part: Part) -> list[Part]:
-    """A part that is its own mirror image, and its like on the other side of the plane x = 0."""
-    return [part, replace(part, offset=(-part.offset[0], part.offset[1], part.offset[2]))]
+    """A part, and its mirror image on the other side of the plane x = 0."""
+    x, y, z = part.offset
+    return [part, replace(part, offset=(-x, y, z), rotation=np.diag([-1.0, 1.0, 1.0]) @ part.rotation)]
 
 
 def loft(material: Material, rings: ArrayLike, capped: bool | tuple[bool, bool] = True) -> Part:

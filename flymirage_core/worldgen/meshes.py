@@ -8,7 +8,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from flymirage_core.worldgen.materials import Material, albedo
-from flymirage_core.worldgen.surfaces import Block, Float, Leaves, Part, Patch, Sheet, drawn_in, patch_uv
+from flymirage_core.worldgen.surfaces import Block, Float, Leaves, Part, Patch, Sheet, block_faces, drawn_in, patch_uv
 
 ROUND_STEPS = (0.0, 0.3, 1.0)
 """Shares of a rounded edge's radius at which a block's grid has lines."""
@@ -67,7 +67,8 @@ def textured_mesh(parts: Sequence[Part]) -> TexturedMesh:
         for local, faces, uv, extent in _pieces(part):
             placed = local @ part.rotation.T + np.asarray(part.offset)
             extents = np.tile(extent, (len(local), 1))
-            columns.append((placed, faces + start, np.full(len(faces), number), uv, local, extents))
+            seen = faces if np.linalg.det(part.rotation) > 0 else faces[:, ::-1]  # a mirror image turns corners round
+            columns.append((placed, seen + start, np.full(len(faces), number), uv, local, extents))
             start += len(local)
     arrays = [np.concatenate(column) for column in zip(*columns, strict=True)]
     return TexturedMesh(*arrays, tuple(p.material for p in parts))
@@ -119,20 +120,15 @@ def _block_pieces(block: Block, material: Material) -> list[Piece]:
     radius = min(block.radius, float(half.min()) * 0.999)
     ramp = np.array(ROUND_STEPS) * radius if radius > 0 else np.zeros(1)
     pieces = []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            i, j = ((axis + 1) % 3, (axis + 2) % 3) if sign > 0 else ((axis + 2) % 3, (axis + 1) % 3)
-            a, b = (np.concatenate([ramp, 2 * half[k] - ramp[::-1]]) for k in (i, j))
-            grid = np.zeros((len(a), len(b), 3))
-            grid[..., axis], grid[..., i], grid[..., j] = sign * half[axis], a[:, None] - half[i], b - half[j]
-            uv = np.stack(np.broadcast_arrays(a[:, None], b[None, :]), 2)
-            lengthwise = material.stretch > 1 and b[-1] > a[-1] and material.joints == (0.0, 0.0, 0.0)
-            flat = grid.reshape(-1, 3)
-            points, faces, uv, extent = _grid_piece(
-                drawn_in(flat, half, radius).reshape(grid.shape) if radius > 0 else grid,
-                uv[..., ::-1] if lengthwise else uv,
-            )
-            pieces.append((points, faces, uv, extent))
+    for corner, a, b in block_faces(half):
+        across, up = float(np.linalg.norm(a)), float(np.linalg.norm(b))
+        u, v = np.concatenate([ramp, across - ramp[::-1]]), np.concatenate([ramp, up - ramp[::-1]])
+        grid = corner + (u[:, None, None] / across) * a + (v[None, :, None] / up) * b
+        if radius > 0:
+            grid = drawn_in(grid.reshape(-1, 3), half, radius).reshape(grid.shape)
+        uv = np.stack(np.broadcast_arrays(u[:, None], v[None, :]), 2)
+        lengthwise = material.stretch > 1 and up > across and material.joints == (0.0, 0.0, 0.0)
+        pieces.append(_grid_piece(grid, uv[..., ::-1] if lengthwise else uv))
     return pieces
 
 

@@ -196,14 +196,24 @@ def _block(block: Block, material: Material, spacing: float) -> list[Surfels]:
     half = np.asarray(block.size, float) / 2
     radius = min(block.radius, float(half.min()) * 0.999)
     pieces = []
-    for axis in range(3):
-        for sign in (-1.0, 1.0):
-            i, j = ((axis + 1) % 3, (axis + 2) % 3) if sign > 0 else ((axis + 2) % 3, (axis + 1) % 3)
-            corner, a, b = np.where(np.arange(3) == axis, sign * half, -half), np.zeros(3), np.zeros(3)
-            a[i], b[j] = 2 * half[i], 2 * half[j]
-            flat = _sheet(Sheet(_vector(corner), _vector(a), _vector(b)), material, spacing)
-            pieces.append(_rounded(flat, half, radius) if radius > 0 else flat)
+    for corner, a, b in block_faces(half):
+        flat = _sheet(Sheet(_vector(corner), _vector(a), _vector(b)), material, spacing)
+        pieces.append(_rounded(flat, half, radius) if radius > 0 else flat)
     return pieces
+
+
+def block_faces(half: Float) -> list[tuple[Float, Float, Float]]:
+    """Corner and two edges (3,) of each face of a box of half size ``half``: cross(a, b) is outside, b is up."""
+    faces = []
+    for axis in range(3):
+        across, up = ((1, 2), (0, 2), (0, 1))[axis]
+        for sign in (-1.0, 1.0):
+            turn = sign if axis != 1 else -sign  # so that cross(a, b) points outwards
+            corner, a, b = -half, np.zeros(3), np.zeros(3)
+            corner[axis], corner[across] = sign * half[axis], -turn * half[across]
+            a[across], b[up] = 2 * turn * half[across], 2 * half[up]
+            faces.append((corner, a, b))
+    return faces
 
 
 def _vector(array: Float) -> Vector:

@@ -1,0 +1,1 @@
+"""Builders of the catalogue's kinds, a module a subject: (size, finish) -> parts."""
