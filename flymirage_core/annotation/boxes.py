@@ -3,11 +3,23 @@
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Final
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 from numpy.typing import ArrayLike, NDArray
+
+from flymirage_core.annotation.labels import UNKNOWN
+
+SIZE_CLASSES: Final = (("small", 0.5), ("medium", 1.2), ("large", float("inf")))
+"""Metres of the longest side up to which each holds."""
+TALL: Final = 1.8
+"""Height against the longer side, ..."""
+LONG: Final = 2.5
+"""... longer side against the others, ..."""
+LOW: Final = 0.45
+"""... and height against the longer side, at which a shape has a word."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +32,7 @@ class ObjectBox:
     size: tuple[float, float, float]  # full lengths along the box's own x, y, z
     yaw: float
     score: float  # 0..1
-    label_source: str  # what named it: "size_prior", "recogniser", "detector", "boxer"
+    label_source: str  # what named it: "recogniser", "detector", "boxer"
     colour: str  # a basic colour name as seen: "dark green"; "" if not measured
     material: str  # a guess; "" if not measured
     supporting_frames: int  # pictures that saw it
@@ -37,6 +49,26 @@ class ObjectBox:
     def corners(self) -> NDArray[np.float64]:
         signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
         return (signs * self.size) @ self.rotation.T + self.centre  # (8, 3)
+
+    @property
+    def size_class(self) -> str:
+        """ "small", "medium" or "large", by the longest side."""
+        return next(name for name, limit in SIZE_CLASSES if max(self.size) <= limit)
+
+    @property
+    def description(self) -> str:
+        """What may be said of it in two or three words: "red stool"; of a thing without a name "tall brown object"."""
+        shape = self._shape if self.label == UNKNOWN else ""
+        return " ".join(word for word in (shape, self.colour, self.label) if word)
+
+    @property
+    def _shape(self) -> str:
+        longer, shorter, height = max(self.size[:2]), min(self.size[:2]), self.size[2]
+        if height > TALL * longer:
+            return "tall"
+        if longer > LONG * max(shorter, height):
+            return "long"
+        return "low" if height < LOW * longer else ""
 
     @property
     def top(self) -> float:
@@ -98,8 +130,10 @@ class BoxMap:
                 return box
         raise KeyError(object_id)
 
-    def summary(self) -> dict[str, int | float]:
-        return {"objects": len(self), "labels": len({b.label for b in self})}
+    def summary(self) -> dict[str, str | int | float]:
+        named = sum(b.label != UNKNOWN for b in self)
+        by = ", ".join(sorted({b.annotator for b in self}))
+        return {"objects": len(self), "named": named, "labels": len({b.label for b in self}), "annotator": by}
 
     def save(self, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)

@@ -95,7 +95,7 @@ class EmbeddedAnnotator:
         boxes = [thing.box for thing, _ in found]
         said = votes(boxes, hits, frames, pictures) if pictures else [None] * len(found)
         names = named([thing for thing, _ in found], said)
-        kept = [(t, s, n) for (t, s), n in zip(found, names, strict=True) if is_believed(t.box, n, s.nearest)]
+        kept = [(t, s, n) for (t, s), n in zip(found, names, strict=True) if is_believed(t.box, n, s)]
         annotator = f"{self.name} {self.version}"
         return BoxMap(tuple(_object_box(k, t, n, s, annotator) for k, (t, s, n) in enumerate(kept)))
 

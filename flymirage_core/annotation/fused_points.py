@@ -5,7 +5,7 @@ Depth of splats is mixed at edges; the edge test throws those pixels away. Nothi
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import Final, TypeVar
+from typing import Final, NamedTuple, TypeVar
 
 import cv2
 import numba
@@ -133,24 +133,41 @@ def fuse_points(frames: Sequence[Frame], voxel: float, max_distance: float) -> F
     Only pixels within ``max_distance`` metres of their own optical centre enter. Colour and place are means weighted by
     (incidence / range)^2: splat depth errs askance, and by a share of the range.
     """
-    slots = np.full(1 << 16, -1, np.int64)  # open-addressing hash table: row of each key
-    keys = np.empty(1 << 15, np.int64)
-    rows = np.empty((1 << 15, 12), np.float32)
-    last = np.empty(1 << 15, np.int32)
+    table = _Table(
+        np.full(1 << 16, -1, np.int64),
+        np.empty(1 << 15, np.int64),
+        np.empty((1 << 15, 12), np.float32),
+        np.empty(1 << 15, np.int32),
+    )
     count = 0
     for index, frame in enumerate(frames):
-        needed = count + frame.depth.size
-        if needed > len(keys):
-            keys, rows, last = _grown(keys, 2 * needed), _grown(rows, 2 * needed), _grown(last, 2 * needed)
-        if 2 * needed > len(slots):
-            slots = np.full(1 << int(2 * needed).bit_length(), -1, np.int64)
-            _rehash(keys, count, slots)
+        table = _with_room(table, count, count + frame.depth.size)
         k, pose = frame.camera.intrinsics, frame.camera.T_world_camera
-        count = _add_frame(
-            frame.rgb, frame.depth, frame.incidence, np.array([k.fx, k.fy, k.cx, k.cy]), np.ascontiguousarray(pose),
-            voxel, min(max_distance, 1e6), index, slots, keys, rows, last, count,
-        )  # fmt: skip
-    return _collected(keys[:count], rows[:count])
+        lens = np.array([k.fx, k.fy, k.cx, k.cy])
+        picture = (frame.rgb, frame.depth, frame.incidence)
+        limits = (voxel, min(max_distance, 1e6))
+        count = _add_frame(picture, lens, np.ascontiguousarray(pose), limits, index, table, count)
+    return _collected(table.keys[:count], table.rows[:count])
+
+
+class _Table(NamedTuple):
+    """Open-addressing hash table of voxels."""
+
+    slots: NDArray[np.int64]  # row of each key, -1 = empty
+    keys: NDArray[np.int64]  # (M,)
+    rows: Float32  # (M, 12) w * point, w * colour, w * direction, w, nearest range, frames
+    last: NDArray[np.int32]  # (M,) frame that touched the row last
+
+
+def _with_room(table: _Table, count: int, needed: int) -> _Table:
+    """The table, larger if need be, with its first ``count`` rows."""
+    slots, keys, rows, last = table
+    if needed > len(keys):
+        keys, rows, last = _grown(keys, 2 * needed), _grown(rows, 2 * needed), _grown(last, 2 * needed)
+    if 2 * needed > len(slots):
+        slots = np.full(1 << int(2 * needed).bit_length(), -1, np.int64)
+        _rehash(keys, count, slots)
+    return _Table(slots, keys, rows, last)
 
 
 def _grown(array: NDArray[Scalar], length: int) -> NDArray[Scalar]:
@@ -191,21 +208,18 @@ def _rehash(keys: NDArray[np.int64], count: int, slots: NDArray[np.int64]) -> No
 
 @numba.njit(cache=True, nogil=True)
 def _add_frame(
-    rgb: NDArray[np.uint8],  # (H, W, 3)
-    depth: Float32,  # (H, W)
-    incidence: Float32,  # (H, W) 0 = not trusted
+    picture: tuple[NDArray[np.uint8], Float32, Float32],  # rgb (H, W, 3), depth (H, W), incidence (H, W)
     lens: NDArray[np.float64],  # fx, fy, cx, cy
     pose: NDArray[np.float64],  # (4, 4) T_world_camera
-    voxel: float,
-    max_distance: float,
+    limits: tuple[float, float],  # edge of a voxel, greatest range
     frame: int,
-    slots: NDArray[np.int64],
-    keys: NDArray[np.int64],
-    rows: Float32,  # (M, 12) w * point, w * colour, w * direction, w, nearest range, frames
-    last: NDArray[np.int32],  # (M,) frame that touched the row last
+    table: _Table,
     count: int,
 ) -> int:
     """Add a frame's trusted pixels to the table; the new number of rows."""
+    rgb, depth, incidence = picture
+    voxel, max_distance = limits
+    slots, keys, rows, last = table
     for v in range(depth.shape[0]):
         for u in range(depth.shape[1]):
             if incidence[v, u] <= 0:

@@ -61,13 +61,6 @@ POLE_SLANT: Final = 0.12
 MAX_LAMP_SIDE: Final = 0.75
 MIN_CARRIER_AREA: Final = 0.1
 """Square metres in plan from which a third thing between foot and shade may carry the shade."""
-PANEL_CLEARANCE: Final = 0.18
-PANEL_DEPTH: Final = 0.17
-PANEL_LENGTH: Final = 0.25
-PANEL_OFFSET: Final = 0.13
-"""Metres between a panel and the side that it is attached to."""
-PANEL_RATIOS: Final = (0.72, 1.25)
-"""Length of a panel against that of the side it is attached to."""
 THIN: Final = 0.12
 """Metres of the shorter side in plan of a panel: a screen on its keyboard, the frame of a trolley."""
 MIN_THIN_CONTACT: Final = 8
@@ -97,7 +90,6 @@ def merge_parts(parts: PartSet) -> None:
     for _ in range(3):
         if not _join_lost_joints(parts):
             break
-    _join_panels(parts)
     _join_thin_pieces(parts)
     _join_contents(parts)
     _join_legs(parts)
@@ -226,37 +218,6 @@ def _nearly_touching(a: Part, b: Part) -> bool:
         return False
     near = cKDTree(a.points).query(b.points, distance_upper_bound=JOINT_GAP)[0]
     return bool(np.isfinite(near).sum() >= MIN_JOINT_POINTS)
-
-
-def _join_panels(parts: PartSet) -> None:
-    """Thin upright panels off the floor, as long as the side of the thing they stand at: headboards, chair backs."""
-    for j in sorted(parts.parts, key=lambda k: (len(parts.parts[k]), k)):
-        panel = parts.parts[j]
-        sides = panel.footprint.size
-        if panel.clearance < PANEL_CLEARANCE or sides.min() > PANEL_DEPTH or sides.max() < PANEL_LENGTH:
-            continue
-        for i in sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k)):
-            if i != j and _attached(panel, parts.parts[i]):
-                parts.join(i, j)
-                break
-
-
-def _attached(panel: Part, body: Part) -> bool:
-    if (
-        panel.thing != body.thing
-        or not body.lower[2] - NEAR < panel.lower[2] < body.upper[2] + PANEL_OFFSET
-        or panel.upper[2] < body.upper[2]
-    ):
-        return False
-    plan = body.footprint
-    away = np.abs(plan.local(panel.footprint.centre[None])[0])  # (2,)
-    length = panel.footprint.size.max()
-    for axis in (0, 1):
-        side = plan.size[1 - axis]
-        at_side = abs(away[axis] - plan.size[axis] / 2) < PANEL_OFFSET and away[1 - axis] < CENTRED * side
-        if at_side and PANEL_RATIOS[0] < length / side < PANEL_RATIOS[1]:
-            return True
-    return False
 
 
 def _join_thin_pieces(parts: PartSet) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from flymirage_core.annotation.appearance import Observation
 from flymirage_core.annotation.box_fitting import FittedBox
+from flymirage_core.annotation.carving import Detections
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.picture_votes import Vote
 from flymirage_core.annotation.recogniser import Recognition, trained_recogniser
@@ -28,6 +29,8 @@ NEAR_ENOUGH: Final = 3.0
 LEAST_UNNAMED: Final = (0.10, 0.15)
 """Metres: least thickness (but flat on a wall) and least second longest side of a thing that nobody has a name for;
 what is thinner is a slat, a frame, a strip."""
+MIN_VIEWS: Final = 4
+"""Views that must have seen a thing that nobody has a name for."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 BUILDING: Final = frozenset({"window"})
@@ -53,18 +56,15 @@ def named(things: Sequence[Observation], votes: Sequence[Vote | None]) -> list[N
     return [_name(r, vote, thing.box) for thing, r, vote in zip(things, recognised, votes, strict=True)]
 
 
-def is_believed(box: FittedBox, name: Name, nearest: float) -> bool:
-    """Whether a box is an object: what the detector knows is; what looks like a left-over from near is not.
-
-    ``nearest``: metres to the nearest view that saw it.
-    """
-    if name.source == "detector" or nearest > NEAR_ENOUGH:
+def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
+    """Whether a box is an object: what the detector knows is; what looks like a left-over from near is not."""
+    if name.source == "detector" or seen.nearest > NEAR_ENOUGH:
         return True
     if name.noun in BUILDING or name.left_over >= MAX_LEFT_OVER:
         return False
     thin, second, longest = sorted(box.size)
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
-    return not (name.noun == UNKNOWN and slat)
+    return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
 
 
 def _name(recognition: Recognition, vote: Vote | None, box: FittedBox) -> Name:

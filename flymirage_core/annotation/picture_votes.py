@@ -40,7 +40,7 @@ _KNOWN: Final[Mapping[str, tuple[str, float, float]]] = {
     "chair": ("chair", 0.4, 1.4),
     "couch": ("sofa", 0.7, 3.6),
     "potted plant": ("potted plant", 0.15, 2.5),
-    "bed": ("bed", 1.2, 3.0),
+    "bed": ("bed", 1.7, 3.0),
     "dining table": ("table", 0.5, 3.5),
     "tv": ("television", 0.3, 2.2),
     "laptop": ("laptop", 0.2, 0.6),

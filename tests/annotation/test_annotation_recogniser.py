@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from flymirage_core.annotation.appearance import FEATURES, mirrored, reversed_depth
 from flymirage_core.annotation.box_fitting import FittedBox
+from flymirage_core.annotation.carving import Detections
 from flymirage_core.annotation.fused_points import Frame
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.naming import Name, agree, is_believed
@@ -166,14 +167,27 @@ def name(noun: str = UNKNOWN, source: str = "recogniser", left_over: float = 0.1
     return Name(noun, source, 0.5, "", left_over)
 
 
+def seen(nearest: float = 1.0, views: int = 9) -> Detections:
+    return Detections(views, nearest, np.zeros(0, int))
+
+
 def test_what_looks_like_a_left_over_from_near_is_dropped_unless_the_detector_knows_it():
-    assert not is_believed(box(0), name(left_over=0.9), 1.0)
-    assert is_believed(box(0), name("chair", "detector", 0.9), 1.0)
-    assert is_believed(box(0), name(left_over=0.9), 4.0)
+    assert not is_believed(box(0), name(left_over=0.9), seen())
+    assert is_believed(box(0), name("chair", "detector", 0.9), seen())
+    assert is_believed(box(0), name(left_over=0.9), seen(4.0))
 
 
 def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
-    assert is_believed(box(0), name(), 1.0)
-    assert not is_believed(box(0, (0.9, 0.05, 0.6)), name(), 1.0)
-    assert not is_believed(replace(box(0, (0.9, 0.05, 2.5)), on_wall=True), name(), 1.0)
-    assert is_believed(replace(box(0, (0.9, 0.05, 0.6)), on_wall=True), name(), 1.0)
+    assert is_believed(box(0), name(), seen())
+    assert not is_believed(box(0, (0.9, 0.05, 0.6)), name(), seen())
+    assert not is_believed(replace(box(0, (0.9, 0.05, 2.5)), on_wall=True), name(), seen())
+    assert is_believed(replace(box(0, (0.9, 0.05, 0.6)), on_wall=True), name(), seen())
+
+
+def test_a_nameless_thing_needs_several_views_and_a_named_one_does_not():
+    assert not is_believed(box(0), name(), seen(views=3))
+    assert is_believed(box(0), name("vase"), seen(views=1))
+
+
+def test_a_window_is_no_thing():
+    assert not is_believed(box(0), name("window"), seen())
