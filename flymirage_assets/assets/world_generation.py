@@ -13,7 +13,7 @@ from resources.imports import describe_import, load_import, picture_of_import
 
 def world_generation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
     @product_asset(
-        version="1", group="world_generation", settings=settings, tools=["scene_writer"], draw=previews.description
+        version="2", group="world_generation", settings=settings, tools=["scene_writer"], draw=previews.description
     )
     def description(stage: Stage) -> SceneDescription:
         """The scene's structured specification and prose, from a taxonomy pick; of an import, its provenance."""

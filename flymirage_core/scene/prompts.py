@@ -7,13 +7,14 @@ from flymirage_core.scene.inflection import article, capitalised, count, phrase,
 from flymirage_core.scene.knowledge import nouns
 
 MOST_IN_PICTURE = 9
-"""Kinds of things that an image prompt names: the largest groups, and what hangs overhead."""
+"""Kinds of things that an image prompt names: those that take most of a view."""
+MOST_IN_WORLD = 26
+"""Kinds of things in one space that a world prompt names."""
 
 
 def image_prompt(design: SceneDesign, place: str) -> str:
-    """One wide view: what it is, its surfaces, its light, what stands nearest to mind; no people."""
-    named = by_noun(design.objects)
-    chosen = sorted(named, key=lambda groups: -_weight(groups))[:MOST_IN_PICTURE]
+    """One wide view: what it is, its surfaces, its light, what takes most of the view; no people."""
+    chosen = _weightiest(by_noun(in_zone(design, design.zones[0])), MOST_IN_PICTURE)
     whole = f"{design.style} {place}"
     return (
         f"Wide-angle photograph at eye level of {article(whole)} {whole}, {design.era}, "
@@ -53,6 +54,11 @@ def surfaces_of(zone: Zone) -> str:
     return ", ".join(f"{with_article[part]} of {names[part]}" for part in order)
 
 
+def in_zone(design: SceneDesign, zone: Zone) -> list[PlannedObject]:
+    """What a zone holds; things that name no zone are in the first."""
+    return [o for o in design.objects if (o.zone or design.zones[0].name) == zone.name]
+
+
 def by_noun(objects: Iterable[PlannedObject]) -> list[list[PlannedObject]]:
     """Groups of one noun and placement together, in order of appearance."""
     found: dict[tuple[str, str, str], list[PlannedObject]] = {}
@@ -62,11 +68,15 @@ def by_noun(objects: Iterable[PlannedObject]) -> list[list[PlannedObject]]:
 
 
 def _contents(design: SceneDesign, zone: Zone) -> str:
-    groups = by_noun(o for o in design.objects if o.zone == zone.name or (not o.zone and zone is design.zones[0]))
+    groups = by_noun(in_zone(design, zone))
     if not groups:
         return ""
-    where = f"The {zone.name}" if zone is not design.zones[0] else "It"
-    return f"{where} contains {things(phrase(g) for g in groups)[0]}."
+    where = f"Through a doorway, the {zone.name}" if zone is not design.zones[0] else "It"
+    return f"{where} contains {things(phrase(g) for g in _weightiest(groups, MOST_IN_WORLD))[0]}."
+
+
+def _weightiest(groups: list[list[PlannedObject]], number: int) -> list[list[PlannedObject]]:
+    return sorted(groups, key=lambda g: -_weight(g))[:number]
 
 
 def _weight(groups: list[PlannedObject]) -> float:

@@ -8,7 +8,7 @@ from flymirage_core.scene.design import Light, PlannedObject, SceneDesign, Zone
 from flymirage_core.scene.furnish import pick
 from flymirage_core.scene.grammar import sentence
 from flymirage_core.scene.inflection import count, phrase, plural, surface_words, things
-from flymirage_core.scene.prompts import by_noun
+from flymirage_core.scene.prompts import by_noun, in_zone
 
 SENTENCES = (7, 11)
 """Of a paragraph, those about things."""
@@ -64,11 +64,11 @@ def _objects(design: SceneDesign, generator: np.random.Generator) -> list[str]:
     """Sentences about a seeded choice of things: what stands, what is on and round it, then walls and air."""
     main, *others = design.zones
     sentences: list[str] = []
-    clusters = _clusters([o for o in design.objects if o.zone in ("", main.name)], generator)
+    clusters = _clusters(in_zone(design, main), generator)
     for key in _order(list(clusters), generator):
         sentences.append(_about(key, clusters[key], main, design, generator))
     for zone in others:
-        groups = by_noun(o for o in design.objects if o.zone == zone.name and not o.relative_to)[:MOST_THINGS]
+        groups = by_noun(o for o in in_zone(design, zone) if not o.relative_to)[:MOST_THINGS]
         if groups:
             said, many = things(phrase(g) for g in groups)
             sentences.append(sentence("side", {"side": f"the {zone.name}", "things": said}, many, generator))
