@@ -15,6 +15,7 @@ from flymirage_assets.failures import STOPS_GROWTH
 from flymirage_assets.home import close_dead_runs, limit_pools, prepare_home, process_tags
 from flymirage_assets.stage import scenes
 from flymirage_core.errors import FlyMirageError
+from flymirage_core.settings import Settings
 from resources.records import SceneOrigin
 
 QUIET = {"loggers": {"console": {"config": {"log_level": "CRITICAL"}}}}
@@ -131,8 +132,8 @@ def launch_backfill(assets: Sequence[str], keys: Sequence[str]) -> str:
 
 
 def scene_tags(origin: SceneOrigin) -> dict[str, str]:
-    """By which runs are found in the UI: the scene, its kind, its category."""
-    tags = {"flymirage/scene": origin.scene, "flymirage/kind": origin.kind}
+    """By which runs are found in the UI: the scene, its kind, its category, the profile that made it."""
+    tags = {"flymirage/scene": origin.scene, "flymirage/kind": origin.kind, "flymirage/profile": Settings().profile}
     return tags | ({"flymirage/category": origin.category.replace(" ", "_")} if origin.category else {})
 
 

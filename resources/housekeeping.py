@@ -95,7 +95,7 @@ def _age_of(folder: UPath) -> float:
     """Seconds since the epoch: when the last file in it was written."""
     if isinstance(folder, Path):
         return folder.stat().st_mtime
-    return max((file.stat().st_mtime for file in _files(folder)), default=0.0)
+    return max((file.fs.modified(file.path).timestamp() for file in _files(folder)), default=0.0)
 
 
 def _size(folder: UPath) -> int:
