@@ -51,7 +51,7 @@ class PictureDetection:
 class YoloxDetector:
     """YOLOX-Nano on the CPU, about 40 ms a picture and two threads."""
 
-    name = "yolox-nano"
+    name = "yolox-nano (Apache-2.0)"
 
     def __init__(self, weights: Path) -> None:
         """The file is read when the first picture comes."""
@@ -65,7 +65,7 @@ class YoloxDetector:
         except cv2.error as error:
             raise InputError(
                 f"{self._weights} cannot be read as an ONNX network; delete it and run `flymirage models fetch "
-                f"{self.name}` again"
+                "yolox-nano` again"
             ) from error
 
     def detect(self, rgb: NDArray[np.uint8]) -> list[PictureDetection]:
