@@ -1,9 +1,11 @@
 """Commands about the finished data set: export, validate, gallery."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from rich.markup import escape
 
 from flymirage_assets.cli.app import app, console, progress_bars, project_store
 
@@ -46,6 +48,47 @@ def rlds(out: Out = None, scene: Scenes = None) -> None:
 def transforms(out: Out = None, scene: Scenes = None) -> None:
     """A transforms.json a scene, with pictures and depth, for those who train splats."""
     write_export("transforms", out, scene)
+
+
+@app.command()
+def validate(export: Annotated[Path, typer.Argument(help="the folder of an export, in any format")]) -> None:
+    """Check an export: counts, poses, videos, depth, prompts, splits, licences; names file and row of what is wrong."""
+    from flymirage_core.dataset.validate import validate as check
+
+    report = check(export)
+    for finding in report.findings:
+        console.print(f"[red]{finding.check}[/red]  {escape(finding.sentence)}", soft_wrap=True, highlight=False)
+    if not report.is_sound:
+        console.print(f"{len(report.findings)} findings in {export}")
+        raise typer.Exit(1)
+    console.print(
+        f"[green]sound[/green] {export}: {report.format}, {len(report.checks)} checks: {', '.join(report.checks)}"
+    )
+
+
+@app.command()
+def gallery(
+    out: Annotated[Path, typer.Option(help="the folder to write")] = Path("data/gallery"),
+    scene: Annotated[
+        list[str] | None, typer.Option("--scene", help="show this scene alone; may be given again")
+    ] = None,
+) -> Path:
+    """Pages to look at, without server or network: plots, each scene in 3D, videos of the flights with their prompts."""
+    from flymirage_assets.assets.dataset import check_exportable, stored_scenes
+    from flymirage_core.dataset.gallery.gallery import write_gallery
+    from flymirage_core.splats.cloud import GaussianCloud
+    from flymirage_core.splats.world import World
+
+    store = project_store()
+    check_exportable(store)
+
+    def cloud_of(name: str) -> Callable[[], GaussianCloud]:
+        return lambda: World.load(store.folder("world", name)).cloud
+
+    scenes = stored_scenes(store, scene or ())
+    index = write_gallery(((s, cloud_of(s.scene)) for s in scenes), out)
+    console.print(f"[green]written[/green] {index.absolute()}: open it in a browser")
+    return index
 
 
 def write_export(form: str, out: Path | None, scenes: list[str] | None, **options: Any) -> Path:
