@@ -95,19 +95,27 @@ class BakedLight:
         return display(radiance * self.exposure)
 
 
+def solid_faces(mesh: TexturedMesh) -> RayCaster:
+    """What casts shadows: all faces but panes of glass and what glows."""
+    every = np.arange(len(mesh.faces))
+    solid = (mesh.emission(every) < GLOWS) & (mesh.opacity(every) > 0.5)
+    return RayCaster(mesh.vertices[mesh.faces[solid]])
+
+
 def bake(
-    surfels: Surfels, lamp_surfels: NDArray[np.bool_], mesh: TexturedMesh, illumination: Illumination
+    surfels: Surfels,
+    lamp_surfels: NDArray[np.bool_],
+    mesh: TexturedMesh,
+    shadows: RayCaster,
+    illumination: Illumination,
 ) -> BakedLight:
-    """Light the place that ``surfels`` cover and ``mesh`` is made of.
+    """Light the place that ``surfels`` cover and ``mesh`` is made of; ``shadows`` are its `solid_faces`.
 
     ``lamp_surfels`` (N,) marks those whose glow is already in ``illumination.lamps``.
     """
     triangles = mesh.vertices[mesh.faces]  # (F, 3, 3)
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    every = np.arange(len(triangles))
-    solid = (mesh.emission(every) < GLOWS) & (mesh.opacity(every) > 0.5)
-    shadows = RayCaster(triangles[solid])
     glow = surfels.albedo * (surfels.emission * ~lamp_surfels)[:, None]
     patches = Patches.of(surfels, glow)
     direct = direct_light(patches.points, patches.normals, illumination, shadows)

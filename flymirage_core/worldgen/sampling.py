@@ -8,36 +8,30 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from flymirage_core.splats.cloud import GaussianCloud
-from flymirage_core.worldgen.assembly import Assembly, Thing
-from flymirage_core.worldgen.lighting import BakedLight, bake
-from flymirage_core.worldgen.meshes import TexturedMesh, corners_of, textured_mesh
+from flymirage_core.worldgen.assembly import Assembly
+from flymirage_core.worldgen.lighting import BakedLight, bake, solid_faces
+from flymirage_core.worldgen.meshes import TexturedMesh, textured_mesh
 from flymirage_core.worldgen.outdoors import BEYOND
 from flymirage_core.worldgen.place import Place
 from flymirage_core.worldgen.rays import RayCaster
 from flymirage_core.worldgen.sky import Sky
-from flymirage_core.worldgen.surfaces import Leaves, Part, Surfels, surfels_of
+from flymirage_core.worldgen.spacing import coarseness, spacing_for
+from flymirage_core.worldgen.surfaces import Leaves, Surfels, surfels_of
 from flymirage_core.worldgen.windows import illumination_of
 
 Float = NDArray[np.float64]
 
-OVERLAP: Final = 0.66
+OVERLAP: Final = 0.6
 """A splat's standard deviation as a share of its surfel's side: the least that leaves no pinholes at corners."""
 THICKNESS: Final = 0.002
 """Standard deviation along the normal, metres."""
 OPACITY, LEAF_OPACITY = 0.99, 0.93
 SH_C0: Final = 0.28209479177387814
 """Real spherical harmonic of degree 0: colour = 0.5 + SH_C0 * coefficient."""
-TRIAL_SPACING: Final = 0.2
-"""Metres, of a coarse cut that tells how many surfels a spacing gives, and how many of them are hidden."""
-SMALL: Final = 1.1
-"""Metres; things smaller than this are cut finer, down to `FINEST` of the spacing."""
-FINEST: Final = 0.45
-FLOWN: Final = np.array([13.0, 13.0, 3.2])
-"""Metres from c: drones rarely fly further; what lies beyond is cut coarser, by `COARSER` for each metre."""
-COARSER: Final = 0.11
-COARSEST: Final = 6.0
-RING: Final = 200
-"""Surfaces of more points than this may be rings round everything: their nearest point counts, not their bounds."""
+TOLERANCE: Final = 0.12
+"""Share by which the count may miss what is asked for before the cut is made again."""
+RESPONSE: Final = 0.62
+"""The count falls with about this root of the spacing: 0.5 were areas alone."""
 COVER: Final = 0.045
 """Metres: what has a surface this close before it cannot be seen."""
 FLUSH: Final = 0.02
@@ -60,23 +54,39 @@ class LitWorld:
 def lit_world(assembly: Assembly, count: int) -> LitWorld:
     """About ``count`` Gaussians of the assembled world, world frame."""
     mesh = textured_mesh(assembly.parts)
-    opaque = mesh.opacity(np.arange(len(mesh.faces))) > 0.5
-    solid = RayCaster(mesh.vertices[mesh.faces[opaque]])
-    factors = [[_coarseness(p, t, assembly) for p in t.parts] for t in assembly.things]
-    cut = _cut(assembly.things, factors, _spacing_for(assembly, mesh, solid, factors, count))
-    pieces = [Surfels.joined(own) for own in cut]
+    solid = solid_faces(mesh)
+    factors = coarseness(assembly, mesh)
+    spacing = spacing_for(assembly, mesh, factors, count)
+    pieces, leaf = _cut(assembly, factors, spacing, solid)
+    share = sum(map(len, pieces)) / count
+    if abs(share - 1) > TOLERANCE:  # places of many small curved things have more surfels than their areas say
+        pieces, leaf = _cut(assembly, factors, spacing * share**RESPONSE, solid)
     illumination, lamps = illumination_of(assembly, pieces)
-    surfels, leaf = Surfels.joined(pieces), _leaves(assembly, cut)
+    surfels = Surfels.joined(pieces)
     is_lamp = np.repeat(np.array(lamps, bool), [len(p) for p in pieces])
-    light = bake(surfels, is_lamp, mesh, illumination)
-    seen = _seen(surfels, leaf, solid, assembly.place)
-    surfels, leaf = surfels[seen], leaf[seen]
+    light = bake(surfels, is_lamp, mesh, solid, illumination)
     glow = surfels.emission[:, None] * light_unit(light)
     radiance = surfels.albedo * (light.irradiance(surfels.points, surfels.normals) / np.pi + glow)
     cloud = splats(surfels, light.seen(radiance), np.where(leaf, LEAF_OPACITY, OPACITY))
     if illumination.sky is not None:
         cloud = _joined(cloud, dome(illumination.sky, light))
     return LitWorld(cloud, mesh, light, illumination.sky)
+
+
+def _cut(
+    assembly: Assembly, factors: Float, spacing: float, solid: RayCaster
+) -> tuple[list[Surfels], NDArray[np.bool_]]:
+    """The surfels of each thing that can be seen, and (N,) which of them all are leaves."""
+    parts = assembly.parts
+    cut = [surfels_of(p, spacing * float(f)) for p, f in zip(parts, factors, strict=True)]
+    surfels = Surfels.joined(cut)
+    leaf = np.repeat([isinstance(p.surface, Leaves) for p in parts], [len(c) for c in cut])
+    seen = _seen(surfels, leaf, solid, assembly.place)
+    thing = np.repeat(np.arange(len(assembly.things)), [len(t.parts) for t in assembly.things])
+    ends = np.cumsum(np.bincount(np.repeat(thing, [len(c) for c in cut])[seen], minlength=len(assembly.things)))
+    kept = surfels[seen]
+    pieces = [kept[np.arange(a, b)] for a, b in zip([0, *ends[:-1]], ends, strict=True)]
+    return pieces, leaf[seen]
 
 
 def light_unit(light: BakedLight) -> float:
@@ -127,50 +137,6 @@ def dome(sky: Sky, light: BakedLight) -> GaussianCloud:
 def _joined(one: GaussianCloud, other: GaussianCloud) -> GaussianCloud:
     names = ("means", "quaternions", "scales", "opacities", "sh")
     return GaussianCloud(*(np.concatenate([getattr(one, name), getattr(other, name)]) for name in names))
-
-
-def _spacing_for(
-    assembly: Assembly, mesh: TexturedMesh, solid: RayCaster, factors: list[list[float]], count: int
-) -> float:
-    """Metres between surfels that give about ``count``: share (a / s^2 + b / s), by the areas and one coarse cut."""
-    triangles = mesh.vertices[mesh.faces]
-    areas = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1) / 2
-    parts = assembly.parts
-    coarse = np.array([f for own in factors for f in own]) * [p.material.detail for p in parts]
-    a = float((np.bincount(mesh.face_part, areas, len(parts)) / coarse**2).sum())
-    cut = _cut(assembly.things, factors, TRIAL_SPACING)
-    surfels = Surfels.joined([piece for own in cut for piece in own])
-    share = float(_seen(surfels, _leaves(assembly, cut), solid, assembly.place).mean())
-    b = max(len(surfels) * TRIAL_SPACING - a / TRIAL_SPACING, 0.0)
-    return float(2 * a / (-b + np.sqrt(b * b + 4 * a * count / share)))
-
-
-def _leaves(assembly: Assembly, cut: list[list[Surfels]]) -> NDArray[np.bool_]:
-    """(N,) which surfels are leaves."""
-    flags = [isinstance(p.surface, Leaves) for p in assembly.parts]
-    return np.repeat(np.array(flags, bool), [len(piece) for own in cut for piece in own])
-
-
-def _cut(things: list[Thing], factors: list[list[float]], spacing: float) -> list[list[Surfels]]:
-    """The surfels of each part of each thing."""
-    return [
-        [surfels_of(p, spacing * f) for p, f in zip(t.parts, own, strict=True)]
-        for t, own in zip(things, factors, strict=True)
-    ]
-
-
-def _coarseness(part: Part, thing: Thing, assembly: Assembly) -> float:
-    """Factor on the spacing of a part: small things finer, far ones coarser."""
-    corners = corners_of(part)  # (V, 3)
-    pieces = corners if len(corners) > RING else np.array([corners.min(axis=0), corners.max(axis=0)])[None]
-    low, high = (pieces, pieces) if pieces.ndim == 2 else (pieces[:, 0], pieces[:, 1])
-    off = np.maximum(np.maximum(low - assembly.truth.centre - FLOWN, assembly.truth.centre - FLOWN - high), 0.0)
-    off[:, 2] = np.maximum(np.maximum(low[:, 2] - FLOWN[2] - 0.8, -1.0 - high[:, 2]), 0.0)
-    far = min(1 + COARSER * float(np.linalg.norm(off, axis=1).min()), COARSEST)
-    if thing.object_id < 0:
-        return far
-    size = max(assembly.truth.objects[thing.object_id].size)
-    return far * float(np.clip(np.sqrt(size / SMALL), FINEST, 1.0))
 
 
 def _seen(surfels: Surfels, leaf: NDArray[np.bool_], solid: RayCaster, place: Place) -> NDArray[np.bool_]:

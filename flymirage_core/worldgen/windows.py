@@ -37,7 +37,7 @@ def illumination_of(assembly: Assembly, pieces: list[Surfels]) -> tuple[Illumina
             rows += _windows(space, assembly)
     lamps = []
     for thing, own in zip(assembly.things, pieces, strict=True):
-        glow = own.emission * own.areas * own.albedo.mean(axis=1)
+        glow = own.emission * own.areas * own.albedo.mean(axis=1)  # (N,)
         lamps.append(thing.shines and bool(glow.sum() > LAMP_POWER))
         if lamps[-1]:
             rows.append(_lamp(own, glow))

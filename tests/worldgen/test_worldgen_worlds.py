@@ -13,7 +13,7 @@ from flymirage_core.splats.collider import from_glb
 from flymirage_core.worldgen.assembly import assemble, build_truth
 from flymirage_core.worldgen.catalogue import KINDS, kind_of
 from flymirage_core.worldgen.colours import NAMED
-from flymirage_core.worldgen.lighting import Illumination, Lamps, bake, direct_light, display
+from flymirage_core.worldgen.lighting import Illumination, Lamps, bake, direct_light, display, solid_faces
 from flymirage_core.worldgen.meshes import textured_mesh
 from flymirage_core.worldgen.model import OfflinePainter, OfflineWorldModel, _built
 from flymirage_core.worldgen.parts import Finish, box, paint
@@ -173,6 +173,11 @@ def test_cells_fill_their_length_without_gaps(length, spacing):
     assert OVERLAP * widths.max() > 0
 
 
+def baked(surfels, parts, illumination):
+    mesh = textured_mesh(parts)
+    return bake(surfels, np.zeros(len(surfels), bool), mesh, solid_faces(mesh), illumination)
+
+
 def lit(strength: float) -> np.ndarray:
     """A bare 4 x 4 x 3 m room under one lamp, grey throughout, with a block in its middle: points and colours."""
     parts = [
@@ -183,7 +188,7 @@ def lit(strength: float) -> np.ndarray:
     surfels = Surfels.joined([surfels_of(p, 0.1) for p in parts])
     lamp = (np.array([0.0, 0.0, 2.0]), np.zeros(3), np.full(3, 0.05), np.array([0, 0, 0.05]), np.full(3, strength))
     illumination = Illumination(Lamps.of([lamp]), None, None)
-    light = bake(surfels, np.zeros(len(surfels), bool), textured_mesh(parts), illumination)
+    light = baked(surfels, parts, illumination)
     radiance = surfels.albedo * light.irradiance(surfels.points, surfels.normals) / np.pi
     return np.concatenate([surfels.points, light.seen(radiance)], axis=1)
 
@@ -204,7 +209,7 @@ def test_the_sun_leaves_the_ground_behind_a_wall_in_shadow():
     surfels = Surfels.joined([surfels_of(p, 0.2) for p in parts])
     sun = Sun(np.array([0, -1, 1]) / np.sqrt(2), np.full(3, 20.0))
     sky = Sky(np.full(3, 3.0), np.full(3, 3.0), sun, 0.0, 0)
-    light = bake(surfels, np.zeros(len(surfels), bool), textured_mesh(parts), Illumination(Lamps.of([]), sun, sky))
+    light = baked(surfels, parts, Illumination(Lamps.of([]), sun, sky))
     up = np.array([[0.0, 0.0, 1.0]])
     shade, open_ground = (light.irradiance(np.array([[0.0, y, 0.0]]), up)[0, 0] for y in (1.0, -3.0))
     assert 0 < shade < 0.5 * open_ground
@@ -217,7 +222,7 @@ def test_light_goes_round_a_corner_by_bouncing():
     surfels = Surfels.joined([surfels_of(p, 0.15) for p in walls])
     lamp = (np.array([-1.5, 0.0, 1.2]), np.zeros(3), np.zeros(3), np.zeros(3), np.full(3, 5.0))
     illumination = Illumination(Lamps.of([lamp]), None, None)
-    light = bake(surfels, np.zeros(len(surfels), bool), textured_mesh(walls), illumination)
+    light = baked(surfels, walls, illumination)
     hidden, up = np.array([[0.6, 0.5, 0.0]]), np.array([[0.0, 0.0, 1.0]])
     assert direct_light(hidden, up, illumination, light.shadows).max() == 0
     assert light.irradiance(hidden, up).min() > 0.01
