@@ -65,9 +65,13 @@ class Row:
         d = self.description
         return (
             f"{f'{d.scene} {d.category}: {d.subcategory}'[:44]:44} {self.seconds:5.1f} {self.megabytes:5.0f} "
-            f"{self.splats:7} {np.mean(self.psnr):5.1f} {np.mean(self.ssim):6.3f} {100 * np.mean(self.holes):7.3f} "
+            f"{self.splats:7} {mean(self.psnr):5.1f} {mean(self.ssim):6.3f} {100 * mean(self.holes):7.3f} "
             f"{self.things:6} {len(self.labels):6} {self.missed:6} {self.tasks:5} {self.flown:5}"
         )
+
+
+def mean(values: list[float]) -> float:
+    return float(np.mean(values)) if values else float("nan")
 
 
 def main() -> None:
@@ -77,7 +81,8 @@ def main() -> None:
     parser.add_argument("--gaussians", type=int, default=SETTINGS.generation.gaussians)
     parser.add_argument("--sheet", type=Path)
     parser.add_argument("--flights", action=argparse.BooleanOptionalAction, default=True)
-    parser.add_argument("--quality", action=argparse.BooleanOptionalAction, default=True)
+    parser.add_argument("--references", type=int, default=VIEWS, help="drone views a scene that are also ray-traced")
+    parser.add_argument("--keep", type=Path, help="folder for each scene's strip of pictures, as soon as it is there")
     options = parser.parse_args()
     print(HEADER, flush=True)
     rows, pictures = [], []
@@ -86,6 +91,9 @@ def main() -> None:
         print(row.line(), flush=True)
         rows.append(row)
         pictures.append(strip)
+        if options.keep:
+            options.keep.mkdir(parents=True, exist_ok=True)
+            cv2.imwrite(str(options.keep / f"{description.scene}.png"), strip[:, :, ::-1])
     if options.sheet:
         write_sheet(pictures, [f"{r.description.category}: {r.description.subcategory}" for r in rows], options.sheet)
     summarise(rows, options.flights)
@@ -122,8 +130,7 @@ def scene(description: SceneDescription, options: argparse.Namespace) -> tuple[R
         {(o.colour, o.material, o.noun) for o in truth.objects},
         sum(u.count for u in truth.unplaced),
     )
-    if options.quality:
-        compare(world, cameras, views, row)
+    compare(world, cameras[: options.references], views, row)
     if options.flights:
         row.tasks, row.flown = fly(world, truth)
     picture = best_view(world.cloud, truth, CpuRasterizer())
@@ -150,7 +157,7 @@ def drone_views(truth: WorldTruth, rng: np.random.Generator) -> list[Camera]:
 
 def compare(world: LitWorld, cameras: list[Camera], views: list, row: Row) -> None:
     tracer = ReferenceTracer(world)
-    for camera, view in zip(cameras, views, strict=True):
+    for camera, view in zip(cameras, views, strict=False):
         reference = tracer.render(camera, 2)
         row.psnr.append(float(-10 * np.log10(((reference - view.rgb / 255.0) ** 2).mean())))
         row.ssim.append(ssim(reference, view.rgb / 255.0))

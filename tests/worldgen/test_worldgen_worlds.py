@@ -3,7 +3,7 @@
 import cv2
 import numpy as np
 import pytest
-from generated_places import DAY, flat, street, works
+from generated_places import DAY, flat, street, tunnel
 
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.cpu import CpuRasterizer
@@ -36,13 +36,15 @@ def world(description):
     return OfflineWorldModel(SMALL).build(description)
 
 
-def test_the_same_key_gives_the_same_bytes(description, world):
+def test_the_same_key_gives_the_same_bytes():
+    few = GenerationSettings(gaussians=20_000)
+    one = OfflineWorldModel(few).build(tunnel())
     _built.cache_clear()
-    again = OfflineWorldModel(SMALL).build(description)
+    again = OfflineWorldModel(few).build(tunnel())
     for name in ("means", "quaternions", "scales", "opacities", "sh"):
-        assert getattr(world.cloud, name).tobytes() == getattr(again.cloud, name).tobytes(), name
-    assert world.collider == again.collider
-    assert world.panorama.tobytes() == again.panorama.tobytes()
+        assert getattr(one.cloud, name).tobytes() == getattr(again.cloud, name).tobytes(), name
+    assert one.collider == again.collider
+    assert one.panorama.tobytes() == again.panorama.tobytes()
 
 
 def test_the_world_has_about_as_many_gaussians_as_asked_for(world):
@@ -91,11 +93,10 @@ def test_the_collider_is_the_same_place_as_the_splats(description, world):
     np.testing.assert_allclose(distance, seen, atol=0.06)
 
 
-@pytest.mark.parametrize("make", [street, works], ids=["street", "works"])
-def test_no_view_is_a_hole(make):
-    """Also in the open air: beyond the place there are hills, houses and a sky."""
-    lit_place = lit_world(assemble(make()), 40_000)
-    centre = np.array(build_truth(make()).centre)
+def test_no_view_in_the_open_air_is_a_hole():
+    """Beyond the place there are hills, houses and a sky."""
+    lit_place = lit_world(assemble(street()), 40_000)
+    centre = np.array(build_truth(street()).centre)
     intrinsics = Intrinsics.from_horizontal_fov(64, 64, np.pi / 2)
     cameras = [Camera(intrinsics, look_along(centre, d)) for d in (*np.eye(3), *-np.eye(3))]
     holes = [float((v.alpha < 0.5).mean()) for v in CpuRasterizer().render(lit_place.cloud, cameras)]
