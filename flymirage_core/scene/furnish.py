@@ -8,22 +8,24 @@ from typing import Any
 import numpy as np
 
 from flymirage_core.scene.design import NEEDS_ANOTHER, OUTDOOR_KINDS, Placement, PlannedObject, Zone
-from flymirage_core.scene.knowledge import Noun, Row, Want, fillers, kits, nouns
+from flymirage_core.scene.knowledge import Noun, Row, Want, ageing, fillers, kits, nouns
 
 FLOOR_SHARE = 0.3
 """Of a zone's ground, what things may cover."""
 WALL_SHARE = 0.7
 """Of the walls' length, what stands before them; of the walls' upper half, what hangs on them."""
 CEILING_SHARE = 0.25
-STANDING: frozenset[Placement] = frozenset({"on_floor", "in_row", "around", "facing", "beside"})
 HEADROOM = 0.15
 """Metres that are kept between a thing and the ceiling."""
 COLOUR_WEIGHT = 4.0
 """How much likelier a colour of the scene's palette is."""
 STATE_SHARE = 0.3
 """Of the groups of things that have visible states, how many are in one."""
+AGEING_SHARE, AGED_SHARE = 0.04, 0.2
+"""Of other groups, how many show the age of their material: in most places, and in aged ones."""
 SIZE_SHARES = (("small", 0.15), ("medium", 0.7), ("large", 0.15))
 FILLER_TRIES = 400
+"""Seeded draws of fillers before a zone counts as full."""
 FILLER_MOST = 5
 """Of one noun in a zone, as far as fillers go."""
 ORDER: tuple[Placement, ...] = ("on_surface", "on_wall", "on_floor", "against_wall", "hanging", "in_row")
@@ -42,7 +44,7 @@ class Budget:
         self.free = {"ground": FLOOR_SHARE * x * y, "ceiling": CEILING_SHARE * x * y, "wall": walls, "high_wall": walls}
 
     def has(self, noun: str) -> bool:
-        return any(w.noun == noun and n for w, n in self.wants.items())
+        return any(w.noun == noun for w in self.wants)
 
     def free_tops(self, on: str = "") -> int:
         """How many more small things can be put on things, or on those of one kind."""
@@ -70,7 +72,7 @@ class Budget:
 
     def _fits_height(self, kind: Noun, placement: Placement) -> bool:
         if placement == "hanging" and self.zone.kind in OUTDOOR_KINDS:
-            return kind.size[2] < 1.0 and kind.finish in ("fairy lights", "lantern", "cloth")
+            return kind.strung
         return self.zone.kind in OUTDOOR_KINDS or kind.size[2] + HEADROOM <= self.zone.dimensions[2]
 
     def _take(self, kind: Noun, want: Want) -> bool:
@@ -109,9 +111,10 @@ def fill_zone(
         noun = str(pick(generator, choices))
         if sum(n for w, n in budget.wants.items() if w.noun == noun) >= FILLER_MOST:
             continue
-        allowed = [p for p in ORDER if p in nouns()[noun].placements]
-        any(budget.add(Want(noun, p), 1) for p in allowed)
-    return Counter({want: n for want, n in budget.wants.items() if n})
+        for placement in ORDER:
+            if placement in nouns()[noun].placements and budget.add(Want(noun, placement), 1):
+                break
+    return budget.wants
 
 
 def _relates(row: Row) -> bool:
@@ -119,7 +122,7 @@ def _relates(row: Row) -> bool:
 
 
 def in_finishes(
-    wants: Counter[Want], zone: str, palette: Sequence[str], generator: np.random.Generator
+    wants: Counter[Want], zone: str, palette: Sequence[str], aged: bool, generator: np.random.Generator
 ) -> list[PlannedObject]:
     """The wants as planned objects: one material for a noun, a few colours, the palette's first; sizes and states."""
     materials: dict[str, str] = {}
@@ -132,7 +135,7 @@ def in_finishes(
         groups = int(generator.integers(1, most + 1))
         for i in range(groups):
             share = number // groups + (i < number % groups)
-            state = str(pick(generator, kind.states)) if kind.states and generator.uniform() < STATE_SHARE else ""
+            state = _state(kind, material, AGED_SHARE if aged else AGEING_SHARE, generator)
             one = PlannedObject(
                 noun=want.noun,
                 count=1,
@@ -153,6 +156,14 @@ def _in_palette(colours: Sequence[str], palette: Sequence[str], generator: np.ra
     weights = np.array([COLOUR_WEIGHT if c in palette else 1.0 for c in colours])
     order = generator.choice(len(colours), size=len(colours), replace=False, p=weights / weights.sum())
     return [colours[int(i)] for i in order]
+
+
+def _state(kind: Noun, material: str, old: float, generator: np.random.Generator) -> str:
+    """A state of such things, else with chance ``old`` one that shows the material's age, else none."""
+    share = generator.uniform()
+    if kind.states and share < STATE_SHARE:
+        return str(pick(generator, kind.states))
+    return str(pick(generator, ageing(material))) if share > 1 - old and ageing(material) else ""
 
 
 def _size(want: Want, generator: np.random.Generator) -> Any:

@@ -13,15 +13,24 @@ from flymirage_core.scene.inflection import article, capitalised
 
 RULE = re.compile(r"<(\w+)>")
 FORM = re.compile(r"\[([^|\]]*)\|([^\]]*)\]")
+TWICE = re.compile(r"\b(\w+?)s? \1s?\b", re.IGNORECASE)
+REDRAWS = 8
 ARTICLE = re.compile(r"\b[Aa]\(n\) (\S+)")
 
 
 def sentence(rule: str, slots: Mapping[str, str], many: bool, generator: np.random.Generator) -> str:
-    """One sentence of a rule, with ``slots`` filled in; ``many``: the subject is plural."""
-    text = frame(rule, generator).format_map(slots)
-    text = FORM.sub(lambda m: m[2] if many else m[1], text)
-    text = ARTICLE.sub(lambda m: f"{article(m[1])} {m[1]}", text)
-    return capitalised(re.sub(r"\s+", " ", text).strip())
+    """One sentence of a rule, with ``slots`` filled in; ``many``: the subject is plural.
+
+    A frame that would say a word twice in a row ("on the tv stand stand two...") is drawn again.
+    """
+    for _ in range(REDRAWS):
+        text = frame(rule, generator).format_map(slots)
+        text = FORM.sub(lambda m: m[2] if many else m[1], text)
+        text = ARTICLE.sub(lambda m: f"{article(m[1])} {m[1]}", text)
+        text = re.sub(r"\s+", " ", text).strip()
+        if not TWICE.search(text):
+            break
+    return capitalised(text)
 
 
 def frame(rule: str, generator: np.random.Generator) -> str:

@@ -6,29 +6,11 @@ from collections.abc import Iterable, Sequence
 from flymirage_core.scene.design import PlannedObject
 from flymirage_core.scene.knowledge import nouns, part_of
 
-ONES = [
-    "no",
-    "one",
-    "two",
-    "three",
-    "four",
-    "five",
-    "six",
-    "seven",
-    "eight",
-    "nine",
-    "ten",
-    "eleven",
-    "twelve",
-    "thirteen",
-    "fourteen",
-    "fifteen",
-    "sixteen",
-    "seventeen",
-    "eighteen",
-    "nineteen",
-]
-TENS = ["-", "-", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety"]
+ONES = (
+    "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve",
+    "thirteen", "fourteen", "fifteen", "sixteen", "seventeen", "eighteen", "nineteen",
+)  # fmt: skip
+TENS = ("", "", "twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 SOUNDS_LIKE_YOU = re.compile(r"(uni(?!n)|util|use|euro|one\b|u-)", re.IGNORECASE)
 MEASURES = ("stack of ", "pallet of ", "row of ", "string of ")
 """Attributes belong to what is measured: a stack of navy books."""

@@ -28,6 +28,7 @@ class Noun(Datum):
     holds: int = 0
     plural: str = ""
     states: tuple[str, ...] = ()
+    strung: bool = False  # it may hang where there is no ceiling
 
     @property
     def unsaid(self) -> bool:
@@ -84,11 +85,15 @@ class Place(Datum):
 
 
 class Look(Datum):
-    """Styles and eras that go together, and what surfaces are made of: part -> material -> colours."""
+    """Styles and eras that go together, and what surfaces are made of: part -> material -> colours.
+
+    Things in an ``aged`` one show their age more often.
+    """
 
     styles: tuple[str, ...]
     eras: tuple[str, ...]
     surfaces: dict[SurfacePart, dict[str, tuple[str, ...]]]
+    aged: bool = False
 
 
 class LightProfile(Datum):
@@ -116,6 +121,12 @@ def finishes() -> dict[str, dict[str, list[str]]]:
 @cache
 def _unsaid() -> frozenset[str]:
     return frozenset(_file("nouns.json")["unsaid"])
+
+
+def ageing(material: str) -> list[str]:
+    """The states that show the age of a material: rusty steel, worn oak."""
+    found: list[str] = _file("nouns.json")["ageing"].get(material, [])
+    return found
 
 
 def part_of(noun: str) -> str:

@@ -166,11 +166,11 @@ def _overall(zones: tuple[Zone, ...]) -> Size:
 def _objects(
     known: Place, zones: tuple[Zone, ...], palette: tuple[str, ...], generator: np.random.Generator
 ) -> tuple[PlannedObject, ...]:
-    wanted = int(generator.integers(*OBJECTS_WANTED))
+    wanted, aged = int(generator.integers(*OBJECTS_WANTED)), looks()[known.look].aged
     objects: list[PlannedObject] = []
     if known.side:
         counts = fill_zone(zones[1], known.side.kits, (), known.fillers, SIDE_OBJECTS, generator)
-        objects = in_finishes(counts, zones[1].name, palette, generator)
+        objects = in_finishes(counts, zones[1].name, palette, aged, generator)
         wanted -= sum(o.count for o in objects)
     counts = fill_zone(zones[0], known.kits, known.options, known.fillers, wanted, generator)
-    return (*in_finishes(counts, zones[0].name, palette, generator), *objects)
+    return (*in_finishes(counts, zones[0].name, palette, aged, generator), *objects)
