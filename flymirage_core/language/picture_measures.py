@@ -45,8 +45,8 @@ def noise_level(luma: Luma) -> float:
 
 
 def contrast(luma: Luma) -> float:
-    """Grey levels between the 5th and the 95th percentile."""
-    low, high = np.percentile(luma, [5, 95])
+    """Grey levels between the 5th and the 95th percentile (of every fourth pixel in every fourth row)."""
+    low, high = np.percentile(luma[::4, ::4], [5, 95])
     return float(high - low)
 
 

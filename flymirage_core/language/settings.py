@@ -18,31 +18,31 @@ class VerdictSettings(BaseModel):
     room, behind which nothing was captured, takes up to a fifth of a picture."""
     max_hole: Positive = 0.2
     """Largest connected part of a sampled frame without a depth return, as a share of its pixels."""
-    max_blur: Positive = 0.5
+    max_blur: Positive = 0.46
     """Crete et al.'s blur effect (0 sharp, 1 blurred), median over sampled frames."""
-    max_noise: Positive = 8.0
+    max_noise: Positive = 3.0
     """Immerkaer's noise estimate, grey levels, median over sampled frames."""
-    min_contrast: Positive = 40.0
+    min_contrast: Positive = 90.0
     """Grey levels between the 5th and the 95th percentile, median over sampled frames: fog leaves little."""
-    min_brightness: Positive = 20.0
+    min_brightness: Positive = 35.0
     """Mean grey level of the darkest sampled frame ..."""
     max_brightness: Positive = 235.0
     """... and of the brightest."""
-    max_flicker: Positive = 8.0
+    max_flicker: Positive = 10.0
     """Grey levels by which a surface changes between two neighbouring frames, after re-projection; worst pair."""
-    max_depth_jump: Positive = 0.1
+    max_depth_jump: Positive = 0.08
     """Share of a frame's points that its neighbour sees at another depth; worst pair."""
     max_floaters: Positive = 0.01
     """Share of a frame's pixels that lie nearer than the flight's clearance leaves room for; worst sampled frame."""
     min_target_visible: Positive = 0.5
     """Least share of sampled frames in which the target is in the picture and not hidden."""
-    min_target_share: Positive = 0.002
+    min_target_share: Positive = 0.004
     """Least share of the last frame's pixels that show the target."""
     max_final_angle_deg: Positive = 25.0
     """Most between the final view's axis and the target's centre."""
     min_progress: Positive = 0.3
     """Least fall of the distance to the target, as a share of its start."""
-    max_hover: Positive = 3.0
+    max_hover: Positive = 1.5
     """Seconds for which the drone may do nothing: neither move nor turn."""
     min_clearance: Positive = 0.15
     max_limit_ratio: Positive = 1.1

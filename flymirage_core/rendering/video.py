@@ -143,10 +143,14 @@ def _decoded_at(path: Path, indices: Iterable[int]) -> Iterator[NDArray[Any]]:
     try:
         with av.open(str(path)) as container:
             stream: Any = container.streams.video[0]
+            decoded, following = container.decode(stream), 0
             for index in indices:
                 wanted = round(index / (stream.average_rate * stream.time_base))
-                container.seek(wanted, stream=stream)  # to the key frame at or before it
-                frame = next((f for f in container.decode(stream) if f.pts >= wanted), None)
+                if index != following:
+                    container.seek(wanted, stream=stream)  # to the key frame at or before it
+                    decoded = container.decode(stream)
+                following = index + 1
+                frame = next((f for f in decoded if f.pts >= wanted), None)
                 if frame is None or frame.is_corrupt:
                     raise ProductError(f"{path} has no whole frame {index}; materialise `frames` again")
                 yield frame.to_ndarray(format="yuv420p")
