@@ -56,7 +56,8 @@ def assemble(description: SceneDescription) -> Assembly:
         structures = structures + beyond(place, daylight_of(sky), rng)
     things = [Thing(s.parts, shines=s.shines) for s in structures]
     for placed_object in truth.objects:
-        things.append(Thing(object_parts(placed_object), placed_object.object_id))
+        parts = object_parts(placed_object, description.scene)
+        things.append(Thing(parts, placed_object.object_id))
         rod = _rod(placed_object, place)
         if rod:
             things.append(Thing(rod))
@@ -101,12 +102,14 @@ def daylight_of(sky: Sky) -> float:
     return float(sky.zenith.mean() / 3.6)
 
 
-def object_parts(o: PlacedObject) -> list[Part]:
-    """The parts of one placed object, in world coordinates."""
+def object_parts(o: PlacedObject, scene: str) -> list[Part]:
+    """The parts of one placed object, in world coordinates. Things of one kind and colour in a scene share a style."""
     main = material_named(f"{o.state} {o.material}", o.colour, o.seed % 9973)
     texture = "wood" if main.texture in ("wood", "fabric") else "metal"
     accent = paint(SECOND.get(main.texture, "charcoal"), texture, seed=o.seed % 997)
-    return placed(kind_of(o.noun).build(o.size, Finish(main, accent, o.seed)), (*o.centre[:2], o.bottom), o.yaw)
+    style = int(seeded(scene, f"style of {o.colour} {o.noun}").integers(1 << 30))
+    finish = Finish(main, accent, o.seed, style)
+    return placed(kind_of(o.noun).build(o.size, finish), (*o.centre[:2], o.bottom), o.yaw)
 
 
 def _rod(o: PlacedObject, place: Place) -> list[Part]:

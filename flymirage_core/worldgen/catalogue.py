@@ -142,7 +142,7 @@ KINDS: dict[str, Kind] = {
     "hanging plant": round_kind(decor.hanging_plant, (0.5, 0.65), (0.75, 0.95), ("white", "ceramic")),
     # streets and squares
     "park bench": kind(street.park_bench, (1.5, 1.9), (0.6, 0.7), (0.8, 0.9), ("oak brown", "teak wood")),
-    "street lamp": kind(street.street_lamp, (0.5, 0.6), (0.5, 1.5), (4.0, 5.2), ("charcoal", "cast iron")),
+    "street lamp": kind(street.street_lamp, (0.45, 0.5), (0.6, 0.75), (4.0, 5.2), ("charcoal", "cast iron")),
     "traffic light": kind(street.traffic_light, (0.34, 0.4), (0.5, 0.6), (3.0, 3.5), ("charcoal", "plastic")),
     "fire hydrant": kind(street.hydrant, (0.42, 0.5), (0.36, 0.42), (0.75, 0.9), ("red", "painted iron")),
     "post box": kind(street.mailbox, (0.5, 0.6), (0.5, 0.56), (1.2, 1.45), ("blue", "painted steel")),
@@ -185,7 +185,7 @@ KINDS: dict[str, Kind] = {
     "cactus": kind(plants.cactus, (0.5, 0.65), (0.4, 0.45), (0.9, 1.3), ("terracotta", "clay")),
     "snake plant": round_kind(plants.snake_plant, (0.36, 0.46), (0.75, 1.05), ("white", "ceramic")),
     "bamboo": kind(plants.bamboo, (0.9, 1.2), (0.5, 0.65), (1.8, 2.4), ("charcoal", "stone")),
-    "tall grass": round_kind(plants.tall_grass, (0.6, 0.9), (0.6, 0.95), ("sage", "leaves")),
+    "tall grass": round_kind(plants.tall_grass, (0.6, 0.9), (0.5, 0.75), ("sage", "leaves")),
     "bonsai": kind(plants.bonsai, (0.4, 0.52), (0.28, 0.34), (0.36, 0.48), ("rust", "ceramic")),
     "boulder": kind(trees.rock, (0.7, 1.6), (0.6, 1.2), (0.4, 0.9), ("grey", "stone")),
     "tree stump": round_kind(trees.stump, (0.5, 0.8), (0.35, 0.5), ("tan", "wood")),

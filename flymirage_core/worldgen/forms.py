@@ -176,7 +176,7 @@ def cable(material: Material, start: ArrayLike, end: ArrayLike, sag: float, radi
     """A hanging cable or rope; ``sag`` metres lower in the middle than the straight line."""
     a, b = np.asarray(start, float), np.asarray(end, float)
     t = np.linspace(0, 1, 13)[:, None]
-    return sweep(material, circle(radius, 6), a + t * (b - a) - [0, 0, sag] * (4 * t * (1 - t)))
+    return sweep(material, circle(radius, 8), a + t * (b - a) - [0, 0, sag] * (4 * t * (1 - t)))
 
 
 def cloth(

@@ -19,7 +19,7 @@ from flymirage_core.worldgen.surfaces import Surfels, block_faces, surfels_of
 from flymirage_core.worldgen.textures import TEXTURES
 
 NOUNS = sorted(KINDS)
-DISTORTED = 1.5
+DISTORTED = 1.6
 """`fitted` may stretch a thing along one side this much more than along the others: beyond, it would look wrong."""
 
 

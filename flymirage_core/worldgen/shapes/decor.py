@@ -356,7 +356,13 @@ def hanging_plant(size: Vector, f: Finish) -> list[Part]:
 def rug(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
     weave = replace(f.main, texture="rug", stretch=1.0, detail=0.7)
-    return [Part(Sheet((-x / 2, -y / 2, z), (x, 0.0, 0.0), (0.0, y, 0.0)), weave)]
+    pile = Part(Sheet((-x / 2 + 0.05, -y / 2, z), (x - 0.1, 0.0, 0.0), (0.0, y, 0.0)), weave)
+    fringe = [
+        box(f.main.shaded(1.4), (0.05, 0.012, z * 0.5), (s * (x / 2 - 0.025), v, 0))
+        for s in (-1, 1)
+        for v in np.linspace(-y / 2 + 0.01, y / 2 - 0.01, int(y / 0.05))
+    ]
+    return [pile, *fringe]
 
 
 def coat_rack(size: Vector, f: Finish) -> list[Part]:

@@ -61,9 +61,9 @@ def street_lamp(size: Vector, f: Finish) -> list[Part]:
             hoop(f.main, 0.09, 0.02, (0, 0, 2.6)),
             hoop(f.main, 0.08, 0.02, (0, 0, 3.4)),
         ]
-    arm = pipe(f.main, [(0, 0, 3.9), (0, 0, 4.7), (0, 1.1, 4.85)], 0.04, 0.4)
-    head = tapered(f.main, [(0.2, 0.5, 0.0), (0.24, 0.56, 0.05), (0.12, 0.4, 0.11)], (0, 1.25, 4.8), 0.05)
-    return [foot, arm, head, box(glow, (0.16, 0.42, 0.02), (0, 1.25, 4.785))]
+    arm = pipe(f.main, [(0, 0, 3.9), (0, 0, 4.75), (0, 0.4, 4.85)], 0.04, 0.3)
+    head = tapered(f.main, [(0.2, 0.5, 0.0), (0.24, 0.56, 0.05), (0.12, 0.4, 0.11)], (0, 0.5, 4.8), 0.05)
+    return [foot, arm, head, box(glow, (0.16, 0.42, 0.02), (0, 0.5, 4.785))]
 
 
 def traffic_light(size: Vector, f: Finish) -> list[Part]:
