@@ -126,7 +126,7 @@ def wait_for(port: int) -> None:
     raise TimeoutError(f"nothing answers on port {port}")
 
 
-def grow_on_cluster(folder: Path, keys: list[str], seconds: float) -> None:
+def grow_on_cluster(folder: Path, keys: list[str], seconds: float, limit: float) -> None:
     """Queue a run a scene, kill a worker when a third is done, and wait until every run has ended."""
     servers, workers = start_cluster(folder, seconds)
     try:
@@ -145,7 +145,7 @@ def grow_on_cluster(folder: Path, keys: list[str], seconds: float) -> None:
         runs.launch_backfill(list(SCENE_PRODUCTS), keys)
         started, killed, done = time.perf_counter(), False, 0
         with dg.DagsterInstance.get() as instance:
-            while done < len(keys) and time.perf_counter() - started < 3000:
+            while done < len(keys) and time.perf_counter() - started < limit:
                 time.sleep(3)
                 done = len(instance.get_materialized_partitions(dg.AssetKey("prompts")))
                 if done >= len(keys) // 3 and not killed:
@@ -187,11 +187,12 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--scenes", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=1.0)
+    parser.add_argument("--limit", type=float, default=3000.0, help="seconds that the cluster has")
     parser.add_argument("--keep", type=Path, help="keep logs here")
     arguments = parser.parse_args()
     folder = arguments.keep or Path(tempfile.mkdtemp())
     folder.mkdir(exist_ok=True)
-    grow_on_cluster(folder, [f"c{i:03d}" for i in range(arguments.scenes)], arguments.seconds)
+    grow_on_cluster(folder, [f"c{i:03d}" for i in range(arguments.scenes)], arguments.seconds, arguments.limit)
     grow_in_one_process(folder / "alone", max(2, arguments.scenes // 5), arguments.seconds)
 
 

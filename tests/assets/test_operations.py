@@ -30,7 +30,8 @@ def store(tmp_path: Path) -> Store:
 def flymirage(folder: Path, *arguments: str, **environment: str) -> str:
     """A command over stand-in stages (tests/stand_in.py); what it printed."""
     env = {k: v for k, v in os.environ.items() if k != "DAGSTER_HOME" and not k.startswith("FLYMIRAGE_")}
-    env |= {"PYTHONPATH": str(Path(__file__).parents[1]), "COLUMNS": "180", **environment}
+    tests = Path(__file__).parents[1]
+    env |= {"PYTHONPATH": f"{tests}:{tests.parent}", "COLUMNS": "180", **environment}
     command = [sys.executable, "-m", "stand_in", *arguments]
     outcome = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=200, check=False)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
