@@ -4,6 +4,7 @@ Rules for a POST that costs money: it is sent again only if it certainly cost no
 was never made - or, where the settings say that such answers are not billed, a 5xx. A lost answer is never a reason.
 """
 
+import logging
 import os
 import re
 import ssl
@@ -24,6 +25,16 @@ Headers = Callable[[str], Mapping[str, str]]  # key -> headers
 Explain = Callable[[httpx.Response], ServiceError]  # a refusal -> what it means
 
 NEVER_SENT = (httpx.ConnectError, httpx.ConnectTimeout, httpx.PoolTimeout)
+
+
+def _without_query(record: logging.LogRecord) -> bool:
+    """Takes the query off the addresses that httpx logs: signatures are secrets."""
+    if isinstance(record.args, tuple):
+        record.args = tuple(a.copy_with(query=None) if isinstance(a, httpx.URL) else a for a in record.args)
+    return True
+
+
+logging.getLogger("httpx").addFilter(_without_query)
 
 
 class Unanswered(Exception):  # noqa: N818 - it is no error yet: the asker decides what it means

@@ -274,6 +274,7 @@ class Contract:
 
     def __init__(self, path: Path) -> None:
         self.document = yaml.safe_load(path.read_text())
+        self._validators: dict[str, jsonschema.Draft202012Validator] = {}
 
     def request_problem(self, request: Request) -> tuple[list[Any], str] | None:
         """(where, what) of a body that the vendor's schema refuses."""
@@ -298,8 +299,11 @@ class Contract:
         raise AssertionError(f"{request.method} {request.path} is not in the vendor's file")
 
     def _errors(self, schema: dict[str, Any], value: Any) -> list[Any]:
-        whole = {**schema, "components": self.document["components"]}
-        return list(jsonschema.Draft202012Validator(whole).iter_errors(json.loads(json.dumps(value))))
+        name = json.dumps(schema, sort_keys=True)
+        if name not in self._validators:
+            whole = {**schema, "components": self.document["components"]}
+            self._validators[name] = jsonschema.Draft202012Validator(whole)
+        return list(self._validators[name].iter_errors(json.loads(json.dumps(value))))
 
 
 def _generate_problem(body: dict[str, Any]) -> tuple[list[str], str] | None:
