@@ -33,7 +33,7 @@ def flymirage(folder: Path, *arguments: str, **environment: str) -> str:
     tests = Path(__file__).parents[1]
     env |= {"PYTHONPATH": f"{tests}:{tests.parent}", "COLUMNS": "180", **environment}
     command = [sys.executable, "-m", "stand_in", *arguments]
-    outcome = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=200, check=False)
+    outcome = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=280, check=False)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     return outcome.stdout
 
