@@ -15,6 +15,12 @@ MIN_LIGHTNESS: Final = 25.0
 """Below this, chroma is mostly noise and is not amplified further."""
 GREY_CHROMA: Final = 9.0
 """Colours with less chroma are named by lightness alone."""
+BLUISH: Final = (200.0, 300.0)
+"""Degrees of hue; indoors light is warm, so what still is bluish is blue, from a lower chroma on: """
+BLUISH_CHROMA: Final = 6.0
+GREENISH: Final = 105.0
+"""Degrees of hue from which pale yellow is a pale green in warm light."""
+PALE: Final = 30.0
 GREYS: Final = ((14.0, "black"), (38.0, "dark grey"), (66.0, "grey"), (86.0, "light grey"), (101.0, "white"))
 """Lightness up to which each name holds."""
 HUES: Final = (
@@ -63,26 +69,28 @@ def colour_name(lab: ArrayLike) -> str:
     """
     lightness, a, b = (float(x) for x in np.asarray(lab, float))
     chroma = float(np.hypot(a, b))
-    if chroma < GREY_CHROMA:
-        return next(name for limit, name in GREYS if lightness < limit or limit > 100)
     hue = float(np.degrees(np.arctan2(b, a)) % 360)
+    if chroma < (BLUISH_CHROMA if BLUISH[0] < hue < BLUISH[1] else GREY_CHROMA):
+        return next(name for limit, name in GREYS if lightness < limit or limit > 100)
     name = min(HUES, key=lambda entry: abs((hue - entry[1] + 180) % 360 - 180))[0]
+    if name == "yellow" and hue > GREENISH and chroma < PALE:
+        name = "green"
     return _shaded(name, hue, lightness, chroma)
 
 
 def _shaded(name: str, hue: float, lightness: float, chroma: float) -> str:
     """The hue's everyday name at this lightness and chroma: dull and dark orange is brown, pale yellow is beige."""
-    warm = 25 < hue < 105
+    warm = 25 < hue < 105 and name != "green"
     if warm and lightness >= LIGHT and chroma < 30:
         return "beige" if chroma > 1.4 * GREY_CHROMA or lightness < 88 else "cream"
-    if warm and name != "yellow" and lightness < 62 and chroma < 55 and not (name == "red" and chroma > 45):
+    if name == "yellow" and lightness < 60:
+        return _dark_yellow(hue, lightness, chroma)
+    if warm and lightness < 62 and chroma < 55 and not (name == "red" and chroma > 32):
         return "dark brown" if lightness < 32 else "brown"
-    if warm and name == "yellow" and lightness < 60:
-        return "olive" if hue > 98 else "brown"
-    if warm and chroma < 35:
+    if warm and chroma < 35 and name != "red":
         return "light brown"
     if name == "pink" and lightness < 45:
-        return "dark red" if hue > 345 else "purple"
+        return "dark red" if hue > 354 or hue < 180 else "purple"
     if name == "red" and lightness > 62:
         return "pink"
     if lightness < DARK and name not in ("orange", "yellow"):
@@ -90,3 +98,9 @@ def _shaded(name: str, hue: float, lightness: float, chroma: float) -> str:
     if lightness > LIGHT and name in ("green", "teal", "blue", "purple"):
         return f"light {name}"
     return name
+
+
+def _dark_yellow(hue: float, lightness: float, chroma: float) -> str:
+    if hue > 98:
+        return "olive"
+    return "brown" if chroma < 38 or lightness < 42 else "dark yellow" if lightness < 50 else "yellow"
