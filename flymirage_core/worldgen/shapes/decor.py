@@ -66,57 +66,6 @@ def ceiling_panel(size: Vector, f: Finish) -> list[Part]:
     return [box(f.second, (x, y, z - 0.005), (0, 0, 0.005)), glow]
 
 
-def potted_plant(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    rng = f.generator()
-    pot_height, r = min(0.38, z * 0.32), min(x, y) * 0.3
-    pot = turned(
-        f.main,
-        [
-            (0, 0),
-            (r * 0.75, 0),
-            (r, pot_height),
-            (r * 0.88, pot_height),
-            (r * 0.86, pot_height - 0.04),
-            (0, pot_height - 0.04),
-        ],
-    )
-    leaf_paint = paint(str(rng.choice(LEAF_GREENS)), "leaf", seed=f.seed)
-    crown = z - pot_height + 0.05
-    stems = [
-        p
-        for _ in range(3)
-        for p in tube(
-            paint("chestnut"),
-            [
-                (rng.uniform(-0.03, 0.03), rng.uniform(-0.03, 0.03), pot_height - 0.05),
-                (*rng.uniform(-0.1, 0.1, 2) * x, z * 0.7),
-            ],
-            0.012,
-        )
-    ]
-    length = float(np.clip(0.28 * crown, 0.1, 0.32))
-    count = int(np.clip(70 * crown / length * 0.5, 60, 220))
-    leaves = foliage(
-        leaf_paint,
-        (x / 2, y / 2, crown / 2),
-        (0, 0, z - crown / 2),
-        (length, length * rng.uniform(0.28, 0.5)),
-        count,
-        rng,
-    )
-    return [pot, *stems, leaves]
-
-
-def small_plant(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    rng = f.generator()
-    r, pot_height = x * 0.3, z * 0.42
-    pot = turned(f.main, [(0, 0), (r * 0.8, 0), (r, pot_height), (r * 0.85, pot_height), (0, pot_height - 0.02)])
-    leaf_paint = paint(str(rng.choice(LEAF_GREENS)), "leaf", seed=f.seed)
-    return [pot, foliage(leaf_paint, (x / 2, y / 2, z * 0.34), (0, 0, z * 0.66), (z * 0.32, z * 0.1), 60, rng)]
-
-
 def vase(size: Vector, f: Finish) -> list[Part]:
     x, _, z = size
     r = x / 2
@@ -128,52 +77,6 @@ def vase(size: Vector, f: Finish) -> list[Part]:
     )
     form = smooth(forms[int(rng.integers(len(forms)))])
     return [turned(f.main, form), turned(f.main.shaded(0.3), [(form[-1][0], z - 0.005), (0, z - 0.02)])]
-
-
-def bowl(size: Vector, f: Finish) -> list[Part]:
-    x, _, z = size
-    r = x / 2
-    outside = turned(f.main, smooth([(0, 0), (r * 0.4, 0), (r * 0.8, z * 0.45), (r, z)], 8))
-    inside = turned(f.main.shaded(0.7), smooth([(r, z), (r * 0.76, z * 0.5), (r * 0.35, z * 0.22), (0, z * 0.2)], 8))
-    fruit = [
-        ellipsoid(paint(c), (r * 0.3,) * 3, (u * r, v * r, z * 0.75))
-        for c, u, v in (("orange", 0.3, 0.1), ("red", -0.3, 0.2), ("olive", 0.0, -0.35))
-    ]
-    return [outside, inside, *fruit]
-
-
-def book_stack(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    rng = f.generator()
-    count = max(3, round(z / 0.045))
-    parts = []
-    for i in range(count):
-        cover = f.main if i % 2 == 0 else f.second
-        w, d = x - rng.uniform(0, 0.03) * (i > 0), y - rng.uniform(0, 0.03) * (i > 0)
-        parts.append(box(cover.shaded(rng.uniform(0.75, 1.25)), (w, d, z / count - 0.003), (0, 0, i * z / count)))
-    return parts
-
-
-def mantel_clock(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    return [box(f.main, (x, y - 0.012, z), (0, -0.006, 0), 0.02), *_dial(min(x, z) * 0.4, (0, y / 2 - 0.008, z * 0.52))]
-
-
-def wall_clock(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    r = min(x, z) / 2
-    rim = _facing(turned(f.main, [(0, 0), (r, 0), (r, y), (r * 0.88, y), (r * 0.86, y * 0.6)]), (0, -y / 2, z / 2))
-    return [rim, *_dial(r * 0.88, (0, y * 0.1, z / 2))]
-
-
-def _dial(radius: float, centre: Vector) -> list[Part]:
-    x, y, z = centre
-    face = _facing(turned(paint("chalk"), [(radius, 0), (0, 0.002)]), centre)
-    hands = [
-        box(paint("black"), (0.012, 0.003, radius * 0.75), (x, y + 0.004, z)),
-        box(paint("black"), (radius * 0.5, 0.003, 0.012), (x + radius * 0.25, y + 0.004, z)),
-    ]
-    return [face, *hands]
 
 
 def _facing(part: Part, offset: Vector) -> Part:
@@ -200,37 +103,6 @@ def laptop(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def globe(size: Vector, f: Finish) -> list[Part]:
-    x, _, z = size
-    r = x / 2
-    stand = turned(f.second, [(0, 0), (r * 0.7, 0), (r * 0.6, 0.02), (0.02, 0.04), (0.02, z - 2 * r + 0.02)])
-    lands = [
-        ellipsoid(paint("moss green"), (r * 0.5, r * 0.3, r * 0.42), (u * r, v * r, z - r + w * r))
-        for u, v, w in ((0.42, 0.5, 0.3), (-0.45, 0.42, -0.2), (0.1, -0.6, 0.2))
-    ]
-    return [stand, ellipsoid(f.main, (r, r, r), (0, 0, z - r)), *lands]
-
-
-def printer(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    tray = box(paint("chalk"), (x * 0.6, y * 0.4, 0.015), (0, y * 0.28, z * 0.32))
-    return [
-        box(f.main, (x, y, z * 0.8), (0, 0, 0), 0.02),
-        box(f.second, (x * 0.9, y * 0.6, z * 0.2), (0, -y * 0.15, z * 0.8), 0.02),
-        tray,
-    ]
-
-
-def microwave(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    door = box(paint("black"), (x * 0.66, 0.015, z * 0.74), (-x * 0.13, y / 2 - 0.01, z * 0.13), 0.005)
-    return [
-        box(f.main, (x, y - 0.015, z), (0, -0.0075, 0), 0.012),
-        door,
-        box(f.second, (0.02, 0.02, z * 0.7), (x * 0.24, y / 2 - 0.01, z * 0.15)),
-    ]
-
-
 def kettle(size: Vector, f: Finish) -> list[Part]:
     x, _, z = size
     r = x * 0.4
@@ -254,16 +126,6 @@ def candle_holder(size: Vector, f: Finish) -> list[Part]:
         cylinder(paint("ivory"), r * 0.42, z * 0.42, (0, 0, z * 0.55)),
         ellipsoid(paint("yellow", emission=4.0), (0.012, 0.012, 0.02), (0, 0, z - 0.02)),
     ]
-
-
-def sculpture(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    plinth = box(f.second, (x, y, z * 0.5), (0, 0, 0), 0.01)
-    balls = [
-        ellipsoid(f.main, (x * k, y * k, z * 0.5 * h), (0, 0, z * (0.5 + 0.5 * c)))
-        for k, h, c in ((0.44, 0.24, 0.24), (0.34, 0.2, 0.6), (0.2, 0.14, 0.86))
-    ]
-    return [plinth, *balls]
 
 
 def painting(size: Vector, f: Finish) -> list[Part]:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from flymirage_core.worldgen.materials import Material
-from flymirage_core.worldgen.parts import Finish, box, cylinder, four_legs, paint, picture, tube, turned, turned_about
+from flymirage_core.worldgen.parts import Finish, box, four_legs, paint, picture, tube, turned
 from flymirage_core.worldgen.surfaces import Part, Vector
 
 BOOK_COLOURS = (
@@ -19,12 +19,6 @@ BOOK_COLOURS = (
     "chalk",
     "plum",
 )
-
-
-def table(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    apron = box(f.second, (x - 0.16, y - 0.16, 0.08), (0, 0, z - 0.12))
-    return [box(f.main, (x, y, 0.04), (0, 0, z - 0.04), 0.008), apron, *four_legs(f.second, (x, y), z - 0.04, 0.06)]
 
 
 def round_table(size: Vector, f: Finish) -> list[Part]:
@@ -90,17 +84,6 @@ def reception_desk(size: Vector, f: Finish) -> list[Part]:
     return [front, *slats, *sides, desk_top, box(f.main, (x, 0.26, 0.04), (0, y / 2 - 0.13, z - 0.04), 0.008)]
 
 
-def chair(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    seat = 0.46
-    legs = four_legs(f.second, (x, y), seat - 0.03, 0.04, 0.01)
-    posts = [box(f.second, (0.035, 0.035, z - seat - 0.02), (s * (x / 2 - 0.03), -y / 2 + 0.03, seat)) for s in (-1, 1)]
-    back = [
-        box(f.main, (x - 0.02, 0.03, 0.10), (0, -y / 2 + 0.03, h), 0.01) for h in np.linspace(seat + 0.14, z - 0.1, 3)
-    ]
-    return [*legs, box(f.main, (x, y, 0.05), (0, 0, seat - 0.03), 0.015), *posts, *back]
-
-
 def padded_chair(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
     seat = 0.47
@@ -109,29 +92,6 @@ def padded_chair(size: Vector, f: Finish) -> list[Part]:
         *four_legs(f.second, (x, y), seat - 0.08, 0.035, 0.03),
         box(f.main, (x, y - 0.04, 0.09), (0, 0.02, seat - 0.09), 0.035),
         back,
-    ]
-
-
-def office_chair(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    feet = [
-        turned_about(box(f.second, (0.05, x / 2 - 0.01, 0.04), (0, x / 4, 0.03)), k * 2 * np.pi / 5) for k in range(5)
-    ]
-    wheels = [
-        cylinder(f.second, 0.03, 0.05, (0.9 * x / 2 * np.sin(-k * 1.2566), 0.9 * x / 2 * np.cos(k * 1.2566), 0))
-        for k in range(5)
-    ]
-    arms = [box(f.second, (0.05, 0.26, 0.03), (s * (x / 2 - 0.03), 0.0, 0.66), 0.01) for s in (-1, 1)]
-    struts = [box(f.second, (0.03, 0.04, 0.2), (s * (x / 2 - 0.04), 0, 0.47)) for s in (-1, 1)]
-    back = box(f.main, (x - 0.12, 0.07, z - 0.54), (0, -y / 2 + 0.11, 0.54), 0.03, 0.08)
-    return [
-        *feet,
-        *wheels,
-        cylinder(f.second, 0.03, 0.36, (0, 0, 0.06)),
-        box(f.main, (x - 0.1, y - 0.12, 0.08), (0, 0.02, 0.42), 0.035),
-        back,
-        *arms,
-        *struts,
     ]
 
 
@@ -190,15 +150,6 @@ def sofa(size: Vector, f: Finish) -> list[Part]:
         parts.append(box(f.main.shaded(1.08), (width - 0.01, y - 0.22, 0.16), (u, 0.09, 0.31), 0.05))
         parts.append(box(f.main.shaded(1.04), (width - 0.02, 0.15, z - 0.46), (u, -y / 2 + 0.26, 0.45), 0.06, 0.12))
     return parts
-
-
-def pouf(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    r = min(x, y) / 2
-    body = turned(
-        f.main, [(0, 0), (r * 0.9, 0.0), (r, z * 0.25), (r, z * 0.75), (r * 0.92, z - 0.02), (r * 0.7, z), (0, z)]
-    )
-    return [body, turned(f.second, [(0, z - 0.015), (0.03, z - 0.01), (0.03, z), (0, z)])]
 
 
 def bed(size: Vector, f: Finish) -> list[Part]:

@@ -8,7 +8,6 @@ from flymirage_core.worldgen.parts import (
     box,
     cylinder,
     ellipsoid,
-    four_legs,
     paint,
     picture,
     smooth,
@@ -97,53 +96,6 @@ def tank(size: Vector, f: Finish) -> list[Part]:
         for a in np.arange(4) * np.pi / 2 + 0.78
     ]
     return [body, *bands, *feet, cylinder(f.second, 0.09, 0.08, (0, 0, z - 0.08))]
-
-
-def machine(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    body = box(f.main, (x, y, z * 0.55), (0, 0, 0.06), 0.02)
-    head = box(f.main.shaded(1.1), (x * 0.55, y * 0.8, z * 0.39), (-x * 0.2, 0, z * 0.55 + 0.06), 0.03)
-    console = box(f.second, (x * 0.3, y * 0.3, z * 0.25), (x * 0.3, y * 0.2, z * 0.55 + 0.06), 0.02)
-    wheel = [turned(f.second, [(0, 0), (0.13, 0), (0.13, 0.05), (0, 0.05)], (x * 0.3, -y * 0.25, z * 0.55 + 0.06))]
-    lights = [
-        cylinder(paint(c, emission=0.6), 0.025, 0.015, (x * (0.24 + 0.06 * i), y * 0.2, z * 0.8 + 0.06))
-        for i, c in enumerate(("red", "yellow", "green"))
-    ]
-    grill = [
-        box(paint("charcoal"), (x * 0.5, 0.01, 0.03), (-x * 0.15, y / 2 - 0.004, 0.16 + 0.07 * i)) for i in range(4)
-    ]
-    return [
-        body,
-        head,
-        console,
-        *wheel,
-        *lights,
-        *grill,
-        *four_legs(f.second, (x, y), 0.06, 0.1),
-        box(f.main, (x * 0.2, y * 0.3, 0.05), (-x * 0.2, 0, z - 0.05)),
-    ]
-
-
-def generator(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    body = box(f.main, (x, y, z * 0.8), (0, 0, 0.08), 0.04)
-    vents = [
-        box(paint("charcoal"), (x * 0.35, 0.012, 0.025), (-x * 0.22, y / 2 - 0.004, 0.2 + 0.08 * i))
-        for i in range(max(3, int((z * 0.8 - 0.3) / 0.08)))
-    ]
-    panel = box(f.second, (x * 0.28, 0.02, z * 0.3), (x * 0.28, y / 2 - 0.008, z * 0.42))
-    exhaust = tube(f.second, [(x * 0.3, 0, z * 0.8), (x * 0.3, 0, z - 0.04), (x * 0.42, 0, z - 0.04)], 0.04)
-    return [body, *vents, panel, *exhaust, *(box(f.second, (0.12, y, 0.08), (s * x * 0.35, 0, 0)) for s in (-1, 1))]
-
-
-def pump(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    r = min(y / 2 - 0.02, z * 0.36)
-    motor = tube(f.main, [(-x / 2 + 0.02, 0, 0.1 + r), (x * 0.1, 0, 0.1 + r)], r * 0.85)
-    volute = tube(f.second, [(x * 0.14, 0, 0.1 + r), (x * 0.42, 0, 0.1 + r)], r)
-    pipe = tube(f.second, [(x * 0.28, 0, 0.1 + r), (x * 0.28, 0, z)], 0.07)
-    flange = cylinder(f.second, 0.11, 0.04, (x * 0.28, 0, z - 0.04))
-    return [box(paint("grey", "stone"), (x, y, 0.1)), *motor, *volute, *pipe, flange]
 
 
 def pipe_rack(size: Vector, f: Finish) -> list[Part]:
@@ -297,13 +249,6 @@ def pallet(size: Vector, f: Finish) -> list[Part]:
     return [*boards, *feet, *sacks]
 
 
-def column(size: Vector, f: Finish) -> list[Part]:
-    x, _, z = size
-    r = x / 2
-    shaft = turned(f.main, [(r * 0.8, 0.12), (r * 0.8, z - 0.14)])
-    return [shaft, box(f.second, (x, x, 0.12), (0, 0, 0), 0.01), box(f.second, (x, x, 0.14), (0, 0, z - 0.14), 0.01)]
-
-
 def electrical_box(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
     warning = box(paint("yellow"), (x * 0.35, 0.004, x * 0.3), (0, y / 2, z * 0.6))
@@ -327,14 +272,6 @@ def fire_extinguisher(size: Vector, f: Finish) -> list[Part]:
         *hose,
         box(paint("black"), (0.14, 0.03, 0.03), (0, 0, z - 0.03)),
     ]
-
-
-def helmet(size: Vector, f: Finish) -> list[Part]:
-    x, y, z = size
-    dome = turned(
-        f.main, smooth([(x * 0.42, 0.02), (x * 0.4, z * 0.45), (x * 0.25, z * 0.85), (0, z)], 10), scale=(1.0, y / x)
-    )
-    return [dome, turned(f.main.shaded(0.9), [(0, 0.0), (x / 2, 0.0), (x / 2, 0.02), (0, 0.02)], scale=(1.0, y / x))]
 
 
 def bottle(size: Vector, f: Finish) -> list[Part]:
