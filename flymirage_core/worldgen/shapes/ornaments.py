@@ -145,7 +145,7 @@ def potted_plant(size: Vector, f: Finish) -> list[Part]:
     pot = _pot(f, 0.3 * x, high)
     green = greenery(f)
     if f.chosen(3) == 2:
-        return [*pot, *fronds(green, 16, x * 0.6, 0.8, high * 0.9, rng, 1.6)]
+        return [*pot, *fronds(green, 16, x * 0.48, 1.2, high * 0.9, rng, 3.4)]
     stems = [
         sweep(
             BARK,
@@ -191,7 +191,7 @@ def small_plant(size: Vector, f: Finish) -> list[Part]:
             ((0.06, 0.06, 0.07), (-0.08, 0.07, 0.14)),
         ]
         return [*pot, *crown(green, blobs, (0.05, 0.035), 420, rng, 0.7)]
-    return [*pot, *fronds(green, 16, 0.2, 0.7, 0.12, rng, 1.3)]
+    return [*pot, *fronds(green, 16, 0.13, 1.1, 0.12, rng, 3.0)]
 
 
 def mantel_clock(size: Vector, f: Finish) -> list[Part]:

@@ -21,11 +21,13 @@ def chair(size: Vector, f: Finish) -> list[Part]:
     if design == 3:
         return _tube_chair(size, f)
     turned_leg = [(0.02, 0.0), (0.014, 0.03), (0.024, 0.14), (0.016, 0.2), (0.022, 0.38), (0.018, seat_height)]
-    legs = (
-        [turned(f.second, smooth(turned_leg, 12), (s * (x / 2 - 0.04), t * (y / 2 - 0.04), 0)) for s in (-1, 1) for t in (-1, 1)]
-        if design == 2
-        else [pipe(f.second, [(s * (x / 2 - 0.025), t * (y / 2 - 0.025), 0), (s * (x / 2 - 0.05), t * (y / 2 - 0.05), seat_height)], 0.02) for s in (-1, 1) for t in (-1, 1)]
-    )  # fmt: skip
+    spots = [(s, t) for s in (-1, 1) for t in (-1, 1)]
+    if design == 2:
+        form = smooth(turned_leg, 12)
+        legs = [turned(f.second, form, (s * (x / 2 - 0.04), t * (y / 2 - 0.04), 0)) for s, t in spots]
+    else:
+        feet, knees = (x / 2 - 0.025, y / 2 - 0.025, 0.0), (x / 2 - 0.05, y / 2 - 0.05, seat_height)
+        legs = [pipe(f.second, [(s * u, t * v, h) for u, v, h in (feet, knees)], 0.02) for s, t in spots]
     seat = tapered(
         f.main,
         [
@@ -219,8 +221,6 @@ def legs_of(f: Finish, size: tuple[float, float], height: float, material: Mater
 
 def table(size: Vector, f: Finish) -> list[Part]:
     x, y, z = size
-    top = tapered(
-        f.main, [(x - 0.03, y - 0.03, z - 0.04), (x, y, z - 0.025), (x, y, z)], radius=0.02 if f.chosen(2) else 0.004
-    )
+    top = box(f.main, (x, y, 0.04), (0, 0, z - 0.04), 0.018 if f.chosen(2) else 0.005)
     apron = [] if f.chosen(4) == 3 else [box(f.second, (x - 0.18, y - 0.18, 0.08), (0, 0, z - 0.12))]
     return [top, *apron, *legs_of(f, (x, y), z - 0.04, f.second)]
