@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.worldgen.bounces import Patches, gathered
+from flymirage_core.worldgen.bounces import Patches, gathered, hemispheres
 from flymirage_core.worldgen.meshes import TexturedMesh
 from flymirage_core.worldgen.rays import NEVER, RayCaster
 from flymirage_core.worldgen.sky import Sky, Sun
@@ -39,6 +39,8 @@ GLOWS: Final = 0.02
 """Emission above which a face casts no shadow: light passes through panes and shades."""
 EXPOSURE: Final = 0.72
 """Of a white surface in the light that half of the place's area exceeds, before the film curve."""
+OPEN_SHARE: Final = 0.5
+"""In the open air pictures are exposed for at least this share of the light of open ground: crowns hold much shade."""
 EXPOSED_FOR: Final = 9.0
 """Metres from the origin within which surface counts most for the exposure."""
 FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.06, 1.0, 0.34, 0.16
@@ -120,8 +122,19 @@ def bake(
     patches = Patches.of(surfels, glow)
     direct = direct_light(patches.points, patches.normals, illumination, shadows)
     indirect = gathered(patches, direct, RayCaster(triangles), normals, illumination.sky, BOUNCES)
-    usual = _usual(direct + indirect, patches, surfels)
+    usual = max(_usual(direct + indirect, patches, surfels), OPEN_SHARE * _open_ground(illumination))
     return BakedLight(illumination, shadows, patches, indirect, illumination.brightness * np.pi / max(usual, 1e-9))
+
+
+def _open_ground(illumination: Illumination) -> float:
+    """Irradiance of level ground on which nothing casts a shadow; 0 indoors."""
+    if illumination.sky is None:
+        return 0.0
+    up = hemispheres(np.array([[0.0, 0.0, 1.0]]), 0)[0]  # (R, 3)
+    light = np.pi * illumination.sky.radiance(up).mean()
+    if illumination.sun is not None:
+        light += illumination.sun.irradiance.mean() * max(float(illumination.sun.towards[2]), 0.0)
+    return float(light)
 
 
 def _usual(irradiance: Float, patches: Patches, surfels: Surfels) -> float:

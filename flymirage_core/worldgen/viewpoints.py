@@ -22,11 +22,11 @@ HEIGHTS: Final = (1.55, 2.1)
 """Metres above the floor; streets and halls are also seen from higher up."""
 AIM: Final = 1.0
 """Metres: height of what a trial view looks at."""
-BALL: Final = 0.4
+BALL: Final = 0.6
 """Metres round the camera that must be free."""
-NEAR: Final = 1.1
+NEAR: Final = 1.7
 """Metres: what is nearer fills the frame."""
-NEAR_WEIGHT, HOLE_WEIGHT, SKY_WEIGHT, DEPTH_WEIGHT, CONTRAST_WEIGHT = 30.0, 60.0, 12.0, 5.0, 10.0
+NEAR_WEIGHT, HOLE_WEIGHT, SKY_WEIGHT, DEPTH_WEIGHT, CONTRAST_WEIGHT = 40.0, 60.0, 12.0, 5.0, 10.0
 """What a trial view loses for near things, holes and sky beyond `MOST_SKY`, and gains for depth and contrast."""
 MOST_SKY: Final = 0.35
 SKY_FROM: Final = 30.0
