@@ -18,7 +18,7 @@ test: .venv-test/ready
 
 .venv/ready: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
-	.venv/bin/pip install -q --disable-pip-version-check -c constraints.txt -e .
+	.venv/bin/pip install -q --disable-pip-version-check -c constraints.txt -e '.[view]'
 	touch $@
 
 .venv-test/ready: pyproject.toml constraints.txt

@@ -13,7 +13,7 @@ export_app = typer.Typer(no_args_is_help=True, help="Write the finished scenes i
 app.add_typer(export_app, name="export")
 
 Out = Annotated[Path | None, typer.Option(help="the folder to write; data/FORMAT, with one scene data/FORMAT-SCENE")]
-Scenes = Annotated[list[str] | None, typer.Option("--scene", help="export this scene alone; may be given again")]
+Scenes = Annotated[list[str] | None, typer.Option("--scene", help="this scene alone; may be given again")]
 
 
 @export_app.command()
@@ -69,11 +69,9 @@ def validate(export: Annotated[Path, typer.Argument(help="the folder of an expor
 @app.command()
 def gallery(
     out: Annotated[Path, typer.Option(help="the folder to write")] = Path("data/gallery"),
-    scene: Annotated[
-        list[str] | None, typer.Option("--scene", help="show this scene alone; may be given again")
-    ] = None,
+    scene: Scenes = None,
 ) -> Path:
-    """Pages to look at, without server or network: plots, each scene in 3D, videos of the flights with their prompts."""
+    """Pages to look at without a server: plots, each scene in 3D, videos of the flights with their prompts."""
     from flymirage_assets.assets.dataset import check_exportable, stored_scenes
     from flymirage_core.dataset.gallery.gallery import write_gallery
     from flymirage_core.splats.cloud import GaussianCloud

@@ -130,7 +130,8 @@ class FlightDataset(Dataset[dict[str, Any]]):
     def _episode_columns(self, episode: EpisodeRecord) -> dict[str, NDArray[Any]]:
         """All numbers of an episode, read once: a few kilobytes."""
         if episode.index not in self._columns:
-            self._columns[episode.index] = self.export.columns(episode.index, (*self.numeric, "task_index"))
+            columns = self.export.columns(episode.index, (*self.numeric, "task_index"))
+            self._columns[episode.index] = {name: np.array(values) for name, values in columns.items()}  # writable
         return self._columns[episode.index]
 
     def _rgb(self, episode: EpisodeRecord, frame: int) -> torch.Tensor:
