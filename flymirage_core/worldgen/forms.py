@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from flymirage_core.worldgen.materials import Material
 from flymirage_core.worldgen.parts import box, ellipsoid, paint, turned
-from flymirage_core.worldgen.surfaces import Float, Leaves, Part, Patch, Sheet, Vector, upright
+from flymirage_core.worldgen.surfaces import Float, Leaves, Part, Patch, Sheet, Vector, upright, vector
 
 BEND_STEPS = 4
 """Straight pieces of a pipe's bend."""
@@ -23,7 +23,7 @@ def placed(part: Part, offset: ArrayLike = (0.0, 0.0, 0.0), rotation: Float | No
     """A part turned by ``rotation`` (3, 3) about the origin, then shifted by ``offset``."""
     turn = np.eye(3) if rotation is None else rotation
     spot = turn @ np.asarray(part.offset) + np.asarray(offset)
-    return replace(part, offset=tuple(float(v) for v in spot), rotation=turn @ part.rotation)
+    return replace(part, offset=vector(spot), rotation=turn @ part.rotation)
 
 
 def group(parts: Sequence[Part], offset: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0) -> list[Part]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from flymirage_core.worldgen.meshes import corners_of
 from flymirage_core.worldgen.parts import Finish
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Part, Vector, vector
 
 Builder = Callable[[Vector, Finish], list[Part]]
 Range = tuple[float, float]
@@ -63,6 +63,6 @@ def fitted(parts: Sequence[Part], size: Vector) -> list[Part]:
     stretch = np.asarray(size) / np.maximum(high - low, 1e-9)
     base = np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
     return [
-        replace(p, offset=tuple((np.asarray(p.offset) - base) * stretch), rotation=stretch[:, None] * p.rotation)
+        replace(p, offset=vector((np.asarray(p.offset) - base) * stretch), rotation=stretch[:, None] * p.rotation)
         for p in parts
     ]

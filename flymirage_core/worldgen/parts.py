@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from flymirage_core.worldgen.colours import linear_rgb
 from flymirage_core.worldgen.materials import Material
-from flymirage_core.worldgen.surfaces import Block, Leaves, Part, Patch, Sheet, Vector, tilted, upright
+from flymirage_core.worldgen.surfaces import Block, Leaves, Part, Patch, Sheet, Vector, tilted, upright, vector
 
 AROUND = 24
 """Sides of a turned shape's grid."""
@@ -42,35 +42,38 @@ def paint(colour: str, texture: str = "plain", emission: float = 0.0, detail: fl
 
 
 def box(
-    material: Material, size: Vector, base: Vector = (0.0, 0.0, 0.0), radius: float = 0.0, pitch: float = 0.0
+    material: Material, size: Vector, base: ArrayLike = (0.0, 0.0, 0.0), radius: float = 0.0, pitch: float = 0.0
 ) -> Part:
     """A box of ``size`` standing with its bottom's centre at ``base``; ``pitch`` leans its top towards -y, radians."""
     turn = tilted(pitch)
     offset = np.asarray(base) + turn @ np.array([0.0, 0.0, size[2] / 2])
-    return Part(Block(size, radius), material, tuple(offset), turn)
+    return Part(Block(size, radius), material, vector(offset), turn)
 
 
 def turned(
     material: Material,
     profile: Sequence[tuple[float, float]],
-    base: Vector = (0.0, 0.0, 0.0),
+    base: ArrayLike = (0.0, 0.0, 0.0),
     scale: tuple[float, float] = (1.0, 1.0),
 ) -> Part:
     """A lathed shape: (radius, height) points from the bottom up; outside is away from z where the profile rises."""
     radius, height = np.asarray(profile, float).T
     angle = -np.linspace(0.0, 2 * np.pi, AROUND + 1)
     ring = np.stack([np.cos(angle) * scale[0], np.sin(angle) * scale[1], 0 * angle], 1)  # (A, 3)
-    return Part(Patch(radius[:, None, None] * ring + height[:, None, None] * np.array([0.0, 0.0, 1.0])), material, base)
+    return Part(
+        Patch(radius[:, None, None] * ring + height[:, None, None] * np.array([0.0, 0.0, 1.0])), material, vector(base)
+    )
 
 
-def cylinder(material: Material, radius: float, height: float, base: Vector = (0.0, 0.0, 0.0)) -> Part:
+def cylinder(material: Material, radius: float, height: float, base: ArrayLike = (0.0, 0.0, 0.0)) -> Part:
     return turned(material, [(0.0, 0.0), (radius, 0.0), (radius, height), (0.0, height)], base)
 
 
-def ellipsoid(material: Material, radii: Vector, centre: Vector) -> Part:
+def ellipsoid(material: Material, radii: ArrayLike, centre: ArrayLike) -> Part:
     angle = np.linspace(-np.pi / 2, np.pi / 2, 13)
-    profile = [(float(np.cos(t)) * radii[0], float(np.sin(t)) * radii[2]) for t in angle]
-    return turned(material, profile, centre, (1.0, radii[1] / radii[0]))
+    x, y, z = vector(radii)
+    profile = [(float(np.cos(t)) * x, float(np.sin(t)) * z) for t in angle]
+    return turned(material, profile, centre, (1.0, y / x))
 
 
 def smooth(points: Sequence[tuple[float, float]], steps: int = 16) -> list[tuple[float, float]]:
@@ -103,7 +106,7 @@ def tube(material: Material, points: ArrayLike, radius: float) -> list[Part]:
         x = np.cross([0.0, 1.0, 0.0] if abs(z[1]) < 0.9 else [1.0, 0.0, 0.0], z)
         x /= np.linalg.norm(x)
         rotation = np.stack([x, np.cross(z, x), z], axis=1)
-        parts.append(Part(cylinder(material, radius, length).surface, material, tuple(a), rotation))
+        parts.append(Part(cylinder(material, radius, length).surface, material, vector(a), rotation))
     return parts
 
 
@@ -143,4 +146,4 @@ def foliage(
 def turned_about(part: Part, yaw: float) -> Part:
     """The same part, turned by ``yaw`` radians about its object's z axis."""
     turn = upright(yaw)
-    return Part(part.surface, part.material, tuple(turn @ np.asarray(part.offset)), turn @ part.rotation)
+    return Part(part.surface, part.material, vector(turn @ np.asarray(part.offset)), turn @ part.rotation)

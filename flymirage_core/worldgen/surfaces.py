@@ -197,7 +197,7 @@ def _block(block: Block, material: Material, spacing: float) -> list[Surfels]:
     radius = min(block.radius, float(half.min()) * 0.999)
     pieces = []
     for corner, a, b in block_faces(half):
-        flat = _sheet(Sheet(_vector(corner), _vector(a), _vector(b)), material, spacing)
+        flat = _sheet(Sheet(vector(corner), vector(a), vector(b)), material, spacing)
         pieces.append(_rounded(flat, half, radius) if radius > 0 else flat)
     return pieces
 
@@ -216,8 +216,10 @@ def block_faces(half: Float) -> list[tuple[Float, Float, Float]]:
     return faces
 
 
-def _vector(array: Float) -> Vector:
-    return float(array[0]), float(array[1]), float(array[2])
+def vector(array: ArrayLike) -> Vector:
+    """Three numbers as plain floats."""
+    x, y, z = np.asarray(array, float)
+    return float(x), float(y), float(z)
 
 
 def _rounded(flat: Surfels, half: Float, radius: float) -> Surfels:

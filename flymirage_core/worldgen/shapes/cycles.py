@@ -21,7 +21,7 @@ from flymirage_core.worldgen.forms import (
 )
 from flymirage_core.worldgen.materials import Material
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint, turned
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, DARK = paint("silver", "brushed"), paint("black")
 TYRE, RIM = paint("black"), paint("silver", "brushed")
@@ -160,7 +160,7 @@ def scooter(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def _boat_rings(length: float, beam: float, depth: float, inset: float = 0.0) -> np.ndarray:
+def _boat_rings(length: float, beam: float, depth: float, inset: float = 0.0) -> Float:
     rings = []
     for t in np.linspace(0, 1, 11):
         half = (beam / 2 - inset) * (0.78 + 0.22 * min(t / 0.3, 1.0)) * (1 - max(0.0, (t - 0.55) / 0.45) ** 2.2) + 0.004
@@ -260,7 +260,7 @@ def shopping_cart(size: Vector, f: Finish) -> list[Part]:
     return [*rings, *sides, *floor, *frame, handle, *wheels]
 
 
-def _along(ring: np.ndarray, share: float) -> np.ndarray:
+def _along(ring: Float, share: float) -> Float:
     closed = np.vstack([ring, ring[:1]])
     at = share * len(ring)
     i = int(at)

@@ -25,7 +25,7 @@ from flymirage_core.worldgen.forms import (
 )
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint, picture, smooth, turned
 from flymirage_core.worldgen.shapes.foliage import BARK, greenery
-from flymirage_core.worldgen.surfaces import Leaves, Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Leaves, Part, Vector
 
 STEEL, DARK, WHITE, BRASS = paint("silver", "brushed"), paint("black"), paint("white"), paint("brass", "brushed")
 BACK_TILT = np.array([[1.0, 0, 0], [0, 0.96, 0.28], [0, -0.28, 0.96]]).T
@@ -210,7 +210,7 @@ def flask(size: Vector, f: Finish) -> list[Part]:
 def bust(size: Vector, f: Finish) -> list[Part]:
     foot = turned(f.main, [(0, 0), (0.1, 0), (0.1, 0.02), (0.05, 0.04), (0.04, 0.09), (0.07, 0.1), (0, 0.1)])
 
-    def ring(w: float, d: float, z: float, y: float = 0.0) -> np.ndarray:
+    def ring(w: float, d: float, z: float, y: float = 0.0) -> Float:
         c = circle(0.5, 18)
         return np.column_stack([c[:, 0] * w, c[:, 1] * d + y, np.full(18, z)])
 
@@ -420,11 +420,11 @@ def fan(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def _spin(angle: float) -> np.ndarray:
+def _spin(angle: float) -> Float:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
 
 
-def _about_y(angle: float) -> np.ndarray:
+def _about_y(angle: float) -> Float:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, 0, s], [0, 1.0, 0], [-s, 0, c]])

@@ -23,7 +23,7 @@ from flymirage_core.worldgen.forms import (
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint, picture, turned
 from flymirage_core.worldgen.shapes.fittings import flange, handwheel
 from flymirage_core.worldgen.shapes.foliage import flowers, greenery
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, DARK, WHITE, BRASS = paint("silver", "brushed"), paint("black"), paint("white"), paint("brass", "brushed")
 
@@ -74,7 +74,7 @@ def basketball_hoop(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def _yaw(angle: float) -> np.ndarray:
+def _yaw(angle: float) -> Float:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
 
@@ -210,7 +210,7 @@ def ventilation_fan(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def _about_y(angle: float) -> np.ndarray:
+def _about_y(angle: float) -> Float:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, 0, s], [0, 1.0, 0], [-s, 0, c]])
 

@@ -5,8 +5,6 @@ Sizes are nominal: `fitted` makes them exact. +y is the front.
 
 from dataclasses import replace
 
-import numpy as np
-
 from flymirage_core.worldgen.forms import (
     FACING,
     bolts,
@@ -18,13 +16,13 @@ from flymirage_core.worldgen.forms import (
 )
 from flymirage_core.worldgen.materials import Material
 from flymirage_core.worldgen.parts import cylinder, paint, picture, turned
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, IRON, DARK = paint("silver", "brushed"), paint("charcoal", "metal"), paint("black")
 HAZARD = patterned("yellow", "hazard")
 
 
-def flange(material: Material, radius: float, centre: Vector, axis: np.ndarray | None = None) -> list[Part]:
+def flange(material: Material, radius: float, centre: Vector, axis: Float | None = None) -> list[Part]:
     """Two bolted discs on a pipe of ``radius``, their axis z unless turned by ``axis``."""
     rim, edge, gap = 1.6 * radius, 0.3 * radius, 0.03 * radius
     profile = [(radius, -edge), (rim, -edge), (rim, -gap), (0.9 * rim, 0), (rim, gap), (rim, edge), (radius, edge)]
@@ -33,7 +31,7 @@ def flange(material: Material, radius: float, centre: Vector, axis: np.ndarray |
     return [placed(p, centre, axis) for p in (disc, *heads)]
 
 
-def handwheel(material: Material, radius: float, centre: Vector, axis: np.ndarray | None = None) -> list[Part]:
+def handwheel(material: Material, radius: float, centre: Vector, axis: Float | None = None) -> list[Part]:
     spokes = spun(pipe(material, [(0, 0, 0), (radius, 0, 0)], 0.1 * radius), 5)
     parts = [
         hoop(material, radius, 0.12 * radius),

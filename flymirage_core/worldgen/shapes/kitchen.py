@@ -21,7 +21,7 @@ from flymirage_core.worldgen.forms import (
     tapered,
 )
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, four_legs, paint, smooth, turned
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, DARK, WHITE = paint("silver", "brushed"), paint("black"), paint("white")
 GLASS = replace(paint("powder blue", "glass"), opacity=0.35)
@@ -158,7 +158,7 @@ def bathtub(size: Vector, f: Finish) -> list[Part]:
 
 
 def toilet(size: Vector, f: Finish) -> list[Part]:
-    def oval(w: float, d: float, z: float, y: float) -> np.ndarray:
+    def oval(w: float, d: float, z: float, y: float) -> Float:
         c = circle(0.5, 20)
         return np.column_stack([c[:, 0] * w, c[:, 1] * d + y, np.full(20, z)])
 

@@ -23,7 +23,7 @@ from flymirage_core.worldgen.forms import (
     tapered,
 )
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint, picture, smooth, turned
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, DARK, WHITE = paint("silver", "brushed"), paint("black"), paint("white")
 BRASS = paint("brass", "brushed")
@@ -128,7 +128,7 @@ def piano(size: Vector, f: Finish) -> list[Part]:
     return [*body, *bed, *keys, *desk, *pedals, box(f.main.shaded(0.85), (1.36, 0.02, 0.44), (0, 0.06, 0.08))]
 
 
-def _drum(f: Finish, radius: float, deep: float, centre: Vector, axis: np.ndarray | None = None) -> list[Part]:
+def _drum(f: Finish, radius: float, deep: float, centre: Vector, axis: Float | None = None) -> list[Part]:
     shell = turned(f.main, [(0, 0), (radius, 0), (radius, deep), (0, deep)])
     head = turned(paint("ivory"), [(0.96 * radius, deep + 0.003), (0, deep + 0.004)])
     rims = [hoop(STEEL, radius, 0.012, (0, 0, h)) for h in (0.01, deep - 0.01)]

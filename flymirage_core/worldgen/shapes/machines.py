@@ -21,7 +21,7 @@ from flymirage_core.worldgen.forms import (
 )
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint, turned
 from flymirage_core.worldgen.shapes.fittings import gauge, handwheel
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, IRON, DARK = paint("silver", "brushed"), paint("charcoal", "metal"), paint("black")
 
@@ -199,7 +199,7 @@ def engine_block(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def _roll(angle: float) -> np.ndarray:
+def _roll(angle: float) -> Float:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[1.0, 0, 0], [0, c, -s], [0, s, c]])
 

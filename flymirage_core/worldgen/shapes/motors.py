@@ -20,7 +20,7 @@ from flymirage_core.worldgen.forms import (
     wheel,
 )
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 TYRE, RIM = paint("black"), paint("silver", "brushed")
 GLASS = replace(paint("charcoal", "glass"), opacity=0.92)
@@ -136,7 +136,7 @@ def van(size: Vector, f: Finish) -> list[Part]:
     return [hull(f.main, body, 0.14), wind, *windows, *name, *rear, *trim, *_four_wheels(0.84, 1.5, 0.35)]
 
 
-def _sideways(side: int) -> np.ndarray:
+def _sideways(side: int) -> Float:
     """Turns what faces +y to face +x or -x."""
     return np.array([[0.0, side, 0], [-side, 0, 0], [0, 0, 1.0]])
 

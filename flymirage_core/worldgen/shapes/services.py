@@ -7,7 +7,7 @@ import numpy as np
 
 from flymirage_core.worldgen.forms import FACING, LYING, cable, hoop, pipe, placed, sign, tapered
 from flymirage_core.worldgen.parts import Finish, box, ellipsoid, paint, turned
-from flymirage_core.worldgen.surfaces import Part, Patch, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Patch, Vector
 
 STEEL, DARK, WHITE, BRASS = paint("silver", "brushed"), paint("black"), paint("white"), paint("brass", "brushed")
 
@@ -197,6 +197,6 @@ def jet_fan(size: Vector, f: Finish) -> list[Part]:
     ]
 
 
-def _about(angle: float) -> np.ndarray:
+def _about(angle: float) -> Float:
     c, s = np.cos(angle), np.sin(angle)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])

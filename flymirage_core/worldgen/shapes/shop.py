@@ -24,7 +24,7 @@ from flymirage_core.worldgen.forms import (
     two_sided,
 )
 from flymirage_core.worldgen.parts import Finish, box, cylinder, ellipsoid, paint, smooth, turned
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 STEEL, DARK, WHITE = paint("silver", "brushed"), paint("black"), paint("white")
 BRASS = paint("brass", "brushed")
@@ -181,7 +181,7 @@ def newspaper_rack(size: Vector, f: Finish) -> list[Part]:
 
 
 def mannequin(size: Vector, f: Finish) -> list[Part]:
-    def ring(w: float, d: float, z: float, y: float = 0.0) -> np.ndarray:
+    def ring(w: float, d: float, z: float, y: float = 0.0) -> Float:
         c = circle(0.5, 16)
         return np.column_stack([c[:, 0] * w, c[:, 1] * d + y, np.full(16, z)])
 

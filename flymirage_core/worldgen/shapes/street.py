@@ -24,7 +24,7 @@ from flymirage_core.worldgen.forms import (
     tapered,
 )
 from flymirage_core.worldgen.parts import Finish, box, ellipsoid, paint, smooth, turned
-from flymirage_core.worldgen.surfaces import Part, Vector
+from flymirage_core.worldgen.surfaces import Float, Part, Vector
 
 IRON = paint("charcoal", "metal")
 STREETS = ("STATION", "CENTRE", "HARBOUR", "MARKET", "PARK", "MUSEUM", "TOWN HALL", "MILL LANE")
@@ -188,7 +188,7 @@ def phone_booth(size: Vector, f: Finish) -> list[Part]:
     return [*parts, box(paint("black"), (0.25, 0.14, 0.5), (0, -0.3, 1.1), 0.02)]
 
 
-def _turn(quarter: int) -> np.ndarray:
+def _turn(quarter: int) -> Float:
     c, s = np.cos(quarter * np.pi / 2), np.sin(quarter * np.pi / 2)
     return np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]])
 
