@@ -5,9 +5,10 @@ import json
 import shutil
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from datetime import date
+from dataclasses import asdict, dataclass
+from datetime import UTC, date, datetime
 from pathlib import Path
+from typing import Any
 
 import dagster as dg
 
@@ -90,6 +91,16 @@ def growth_report(store: Store, scenes: Sequence[str]) -> GrowthReport:
         grown += any(r.asset == LAST_PRODUCT for r in records)
         kept, dropped = kept + int(verdict.get("kept", 0)), dropped + int(verdict.get("dropped", 0))
     return GrowthReport(len(scenes), grown, len(scenes) - grown, kept, dropped, round(usd, 4), round(seconds, 1))
+
+
+def post_report(instance: dg.DagsterInstance, store: Store, scenes: Sequence[str]) -> GrowthReport:
+    """The report of a `flymirage grow`, also as a materialisation of the asset ``growth_report``."""
+    report = growth_report(store, scenes)
+    night = datetime.now(UTC).date().isoformat()
+    metadata: dict[str, Any] = {"night": night, **asdict(report)}
+    if scenes:
+        instance.report_runless_asset_event(dg.AssetMaterialization("growth_report", metadata=metadata))
+    return report
 
 
 def _readable(store: Store, asset: str, scene: str) -> ProductRecord | None:

@@ -24,7 +24,7 @@ class GrowthSettings(Section):
     sweep_cron: str = "30 5 * * *"
     """When scenes with stale or missing products are requested again."""
     timezone: str = "UTC"
-    min_free_gb: NotNegative = 5.0
+    min_free_gb: NotNegative = 2.0
     """Growth stops before a scene if the store's disk has less than this."""
 
     @field_validator("cron", "sweep_cron")

@@ -27,7 +27,8 @@ def main() -> None:
     except OSError as error:
         if error.errno not in NO_RETRY:
             raise
-        _say(f"{error.filename} cannot be written: {NO_RETRY[error.errno]}; make room, or set FLYMIRAGE_STORE")
+        what = error.filename or "the store"
+        _say(f"{what} cannot be written: {NO_RETRY[error.errno]}; make room, or set FLYMIRAGE_STORE")
 
 
 def _say(sentence: str) -> None:

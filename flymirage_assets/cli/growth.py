@@ -1,6 +1,6 @@
 """Commands that make scenes: demo, grow, make, rebuild."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -8,7 +8,7 @@ import typer
 from rich.markup import escape
 
 from flymirage_assets.cli.app import app, console, progress_bars, project_settings, project_store
-from flymirage_assets.cli.exports import lerobot
+from flymirage_assets.cli.exports import gallery, lerobot
 from flymirage_core.errors import FlyMirageError, InputError
 
 if TYPE_CHECKING:
@@ -41,12 +41,13 @@ def demo(out: Annotated[Path, typer.Option(help="where the LeRobot folder goes")
     store.register(SceneOrigin(scene=DEMO_SCENE, kind="generated"))
     make_scenes([DEMO_SCENE])
     lerobot(out)
+    index = gallery(out.parent / "gallery")
     console.print(products_table(store, DEMO_SCENE))
     products = Path(str(store.base)) / "products"
     console.print(
         f"products, each with a preview.jpg:  {products}\n"
         f"the data set (LeRobot v3.0):        {out.absolute()}\n"
-        f"videos to look at:                  {products / 'frames' / DEMO_SCENE}/*/0000/rgb.mp4\n"
+        f"to look at, in a browser:           {index.absolute()}\n"
         "everything in the browser:          make dev"
     )
 
@@ -57,7 +58,7 @@ def grow(
     forever: Annotated[bool, typer.Option("--forever", help="scene after scene, until stopped")] = False,
 ) -> None:
     """Grow scenes through every product, unfinished ones first; each new one in the place that is rarest so far."""
-    from flymirage_assets.growing import endless_scenes, next_scenes
+    from flymirage_assets.growing import endless_scenes, next_scenes, post_report
     from flymirage_assets.report import scenes_table
     from flymirage_assets.runs import dagster_instance
     from flymirage_core.scene.taxonomy import taxonomy_named
@@ -65,8 +66,19 @@ def grow(
     store, kinds = project_store(), taxonomy_named(project_settings().taxonomy)
     with dagster_instance() as instance:
         keys = endless_scenes(store, instance, kinds) if forever else next_scenes(store, instance, scenes, kinds)
-        begun = grow_scenes(instance, keys)
+        begun: list[str] = []
+        try:
+            grow_scenes(instance, _noting(_until_full(keys), begun))
+        finally:
+            report = post_report(instance, store, begun)
     console.print(scenes_table(store, begun[-20:]))
+    console.print(f"{report.grown} grown, {report.failed} failed, ${report.usd:.2f} spent")
+
+
+def _noting(keys: Iterable[str], begun: list[str]) -> Iterator[str]:
+    for key in keys:
+        begun.append(key)
+        yield key
 
 
 @app.command()
@@ -134,26 +146,18 @@ def make_scenes(keys: list[str], assets: "dict[str, list[str]] | None" = None) -
         grow_scenes(instance, keys, assets)
 
 
-def grow_scenes(
-    instance: "DagsterInstance", keys: Iterable[str], assets: "dict[str, list[str]] | None" = None
-) -> list[str]:
-    """Materialise scene after scene until there is none left or a reason to stop; return the keys that were begun.
+def grow_scenes(instance: "DagsterInstance", keys: Iterable[str], assets: "dict[str, list[str]] | None" = None) -> None:
+    """Materialise scene after scene until there is none left or a reason to stop.
 
     Raises `RunError` at the end if one failed, and `StoppedError` at Ctrl-C: nothing half-made is ever read, and the
     next call carries on from the last finished product.
     """
-    from flymirage_assets.growing import why_stop
     from flymirage_assets.runs import RunError, run_scene
 
-    settings, store = project_settings(), project_store()
-    begun: list[str] = []
-    failed: list[str] = []
+    begun, failed = 0, list[str]()
     for key in keys:
-        if reason := why_stop(store, settings):
-            console.print(f"[yellow]stopped[/yellow] {escape(reason)}", soft_wrap=True)
-            break
         console.print(f"[bold]{key}[/bold]")
-        begun.append(key)
+        begun += 1
         with progress_bars():
             outcome = run_scene(instance, key, (assets or {}).get(key, ()))
         if outcome.interrupted:
@@ -164,8 +168,19 @@ def grow_scenes(
         if outcome.stops_growth:
             break
     if failed:
-        raise RunError(f"{len(failed)} of {len(begun)} scenes failed: {', '.join(failed)}")
-    return begun
+        raise RunError(f"{len(failed)} of {begun} scenes failed: {', '.join(failed)}")
+
+
+def _until_full(keys: Iterable[str]) -> Iterator[str]:
+    """``keys`` while there is room for another scene; none is taken, and so claimed, that will not be begun."""
+    from flymirage_assets.growing import why_stop
+
+    settings, store, iterator = project_settings(), project_store(), iter(keys)
+    while not (reason := why_stop(store, settings)):
+        if (key := next(iterator, None)) is None:
+            return
+        yield key
+    console.print(f"[yellow]stopped[/yellow] {escape(reason)}", soft_wrap=True)
 
 
 class StoppedError(FlyMirageError):
