@@ -209,7 +209,9 @@ def _core(cursor: _Cursor) -> Phrase:
 
 
 def _noun_ends(cursor: _Cursor, words: list[str]) -> bool:
-    if cursor.word in _STOPS or cursor.match(_COUNTED) or cursor.match(_LINKS):
+    if cursor.word in _STOPS or cursor.match(_COUNTED):
+        return True
+    if words and cursor.match(_LINKS):  # "plant hanging on"; but "hanging plant"
         return True
     if cursor.word == "of" and words:
         return False  # "chest of drawers"

@@ -20,7 +20,7 @@ from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 ROOM = furnished_room()
 CHAIR = ROOM.by_id(0)
 SETTINGS = VerdictSettings()
-LENS = Intrinsics.from_horizontal_fov(320, 240, np.radians(80))
+LENS = Intrinsics.from_horizontal_fov(160, 120, np.radians(80))
 
 
 def seen(x: float, index: int, boxes: BoxMap = ROOM, gain: float = 1.0) -> Sighting:
