@@ -3,6 +3,8 @@
     python benchmarks/descriptions.py                 500 scenes of a growing data set, and 600 draws from each taxonomy
     python benchmarks/descriptions.py 200             200 scenes
     python benchmarks/descriptions.py 500 --read 30   and prints 30 of them, to be read aloud
+
+A sentence frame is a sentence without its facts: nouns, colours, numbers and lists of them are one blank.
 """
 
 import argparse
