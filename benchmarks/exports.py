@@ -11,6 +11,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import av
@@ -94,15 +95,18 @@ def synthetic_scenes(folder: Path) -> list[SceneProducts]:
 
 
 def reading(folder: Path) -> None:
-    dataset = flymirage_core.dataset.open(folder)
-    chosen = np.random.default_rng(0).permutation(len(dataset))[:600].tolist()
-    paths = sorted((folder / "videos").rglob("*.mp4"))
-    rate("plain PyAV, sequential, RGB alone", lambda: sum(1 for _ in decoded(paths)))
-    rate("open(), sequential", lambda: sum(1 for i in range(len(dataset)) if dataset[i]))
-    rate("open(), random", lambda: sum(1 for i in chosen if dataset[i]))
+    dataset = flymirage_core.dataset.open(folder, scenes=[flymirage_core.dataset.open(folder).episodes[0].scene])
+    chosen = np.random.default_rng(0).permutation(len(dataset))[:MOST_FRAMES].tolist()
+    paths = sorted((folder / "videos").rglob("*.mp4"))[:1]
+    rate("plain PyAV, sequential, RGB alone", lambda: sum(1 for _ in islice(decoded(paths), MOST_FRAMES)))
+    rate("open(), sequential", lambda: sum(1 for i in range(min(MOST_FRAMES, len(dataset))) if dataset[i]))
     rate("plain PyAV, random: seek and decode, file reopened", lambda: sum(1 for _ in sought(paths, chosen)))
+    rate("open(), random", lambda: sum(1 for i in chosen if dataset[i]))
     with_depth = flymirage_core.dataset.open(folder, depth=True)
-    rate("open(depth=True), random", lambda: sum(1 for i in chosen[:200] if with_depth[i]))
+    rate("open(depth=True), random", lambda: sum(1 for i in chosen if with_depth[i]))
+
+
+MOST_FRAMES = 300
 
 
 def decoded(paths: list[Path]) -> Iterator[np.ndarray]:

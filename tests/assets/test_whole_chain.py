@@ -121,6 +121,9 @@ def test_the_demo_is_one_command_with_a_table_and_the_places_of_things(project: 
     assert all(asset in outcome.stdout for asset in SCENE_PRODUCTS)
     assert str(project.folder / "data" / "lerobot") in outcome.stdout
     assert (project.folder / "data" / "lerobot" / "meta" / "info.json").exists()
+    assert (project.folder / "data" / "gallery" / "scenes" / "demo.html").exists()
+    checked = project.flymirage("validate", "data/lerobot")
+    assert checked.returncode == 0 and "sound" in checked.stdout, checked.stdout + checked.stderr
 
 
 @pytest.mark.slow
