@@ -6,11 +6,12 @@ import numpy as np
 
 from flymirage_core.scene.description import SceneDescription
 from flymirage_core.scene.keys import rng as seeded
+from flymirage_core.worldgen.backdrop import beyond
 from flymirage_core.worldgen.building import ceiling_at, indoor
 from flymirage_core.worldgen.catalogue import kind_of
 from flymirage_core.worldgen.layout import furnish
 from flymirage_core.worldgen.materials import material_named
-from flymirage_core.worldgen.outdoors import beyond, outdoor
+from flymirage_core.worldgen.outdoors import outdoor
 from flymirage_core.worldgen.parts import Finish, paint, tube
 from flymirage_core.worldgen.place import Opening, Place, Space, Wall, place_for
 from flymirage_core.worldgen.sky import Sky, exposure_of, sky_of

@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from flymirage_core.splats.cloud import GaussianCloud
 from flymirage_core.worldgen.assembly import Assembly
+from flymirage_core.worldgen.backdrop import BEYOND
 from flymirage_core.worldgen.lighting import BakedLight, bake, solid_faces
 from flymirage_core.worldgen.meshes import TexturedMesh, textured_mesh
-from flymirage_core.worldgen.outdoors import BEYOND
 from flymirage_core.worldgen.place import Place
 from flymirage_core.worldgen.rays import RayCaster
 from flymirage_core.worldgen.sky import Sky
