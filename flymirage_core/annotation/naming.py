@@ -24,6 +24,8 @@ HALF_VOTE: Final = 1.5
 
 MAX_LEFT_OVER: Final = 0.7
 """Probability of being no object of its own from which a box that the detector does not know is dropped."""
+BULKY, WELL_SEEN = 0.4, 24
+"""... unless it is as thick as this (metres) and so many views saw it: that is a thing, though perhaps a new one."""
 NEAR_ENOUGH: Final = 3.0
 """Metres; what no view saw from so near is not judged: from afar everything looks like a left-over."""
 LEAST_UNNAMED: Final = (0.10, 0.15)
@@ -60,9 +62,10 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     """Whether a box is an object: what the detector knows is; what looks like a left-over from near is not."""
     if name.source == "detector" or seen.nearest > NEAR_ENOUGH:
         return True
-    if name.noun in BUILDING or name.left_over >= MAX_LEFT_OVER:
-        return False
     thin, second, longest = sorted(box.size)
+    bulky = thin >= BULKY and seen.views >= WELL_SEEN
+    if name.noun in BUILDING or (name.left_over >= MAX_LEFT_OVER and not bulky):
+        return False
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
     return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
 

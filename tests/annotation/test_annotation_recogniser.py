@@ -175,6 +175,7 @@ def test_what_looks_like_a_left_over_from_near_is_dropped_unless_the_detector_kn
     assert not is_believed(box(0), name(left_over=0.9), seen())
     assert is_believed(box(0), name("chair", "detector", 0.9), seen())
     assert is_believed(box(0), name(left_over=0.9), seen(4.0))
+    assert is_believed(box(0), name(left_over=0.9), seen(views=30))  # bulky and seen from everywhere
 
 
 def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
