@@ -87,7 +87,7 @@ def surface_words(colour: str, material: str) -> str:
     ('brown oak planks', 'chalk plaster')
     """
     words = attributes(colour, material)
-    return words + "s" if words.endswith(("plank", "tile", "panel")) else words
+    return words + "s" if words.endswith(("plank", "tile", "panel", "board")) else words
 
 
 def phrase(groups: Sequence[PlannedObject]) -> tuple[str, int]:
