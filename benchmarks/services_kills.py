@@ -4,7 +4,7 @@ Each scene runs `describe -> image -> world` of profile `paper` in processes of 
 `tests/services`, through the same stages that Dagster runs. A process is killed (SIGKILL) at a random instant again and
 again; then it may end in peace. Counted: how each process ended, and how often each scene's world was charged.
 
-    python benchmarks/services_kills.py [scenes]
+    python benchmarks/services_kills.py [scenes [seed]]
 """
 
 import json
@@ -166,7 +166,7 @@ def switch_on_faults(services: "object", chance: random.Random) -> list[str]:
     return chosen
 
 
-def fly_through_fire(scenes: int, seed: int = 7) -> dict[str, object]:
+def fly_through_fire(scenes: int, seed: int) -> dict[str, object]:
     from marble_files import originals_of
     from paper_services import paper_services
     from splat_worlds import box
@@ -241,6 +241,7 @@ def report(outcomes: list[Outcome], services: "object", folder: Path) -> dict[st
 if __name__ == "__main__":
     multiprocessing.get_context("forkserver").set_forkserver_preload(["flymirage_assets.stage", "resources.tools"])
     started = time.perf_counter()
-    summary = fly_through_fire(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
+    scenes, seed = (int(argument) for argument in (*sys.argv[1:], *("200", "7")[len(sys.argv) - 1 :]))
+    summary = fly_through_fire(scenes, seed)
     summary["seconds"] = round(time.perf_counter() - started)
     print(json.dumps(summary, indent=1))
