@@ -8,6 +8,7 @@ import io
 import numpy as np
 import trimesh
 from numpy.typing import ArrayLike, NDArray
+from trimesh.exchange.gltf import export_glb
 
 from flymirage_core.errors import WorldError
 
@@ -19,7 +20,9 @@ def to_glb(vertices: ArrayLike, faces: ArrayLike) -> bytes:
     """A GLB of one mesh: ``vertices`` (V, 3) metres, world frame; ``faces`` (F, 3) indices. Same input, same bytes."""
     x, y, z = np.asarray(vertices, np.float64).T
     mesh = trimesh.Trimesh(np.stack([x, z, -y], axis=1), np.asarray(faces, np.int64), process=False)
-    return bytes(trimesh.Scene({"collider": mesh}).export(file_type="glb"))
+    scene = trimesh.Scene()
+    scene.add_geometry(mesh, geom_name="collider")
+    return bytes(export_glb(scene))  # type: ignore[no-untyped-call]
 
 
 def from_glb(data: bytes) -> Triangles:

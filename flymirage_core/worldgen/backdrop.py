@@ -65,7 +65,7 @@ def _ring(place: Place, material: Material, z: float) -> list[Part]:
         ]
         low, high = outer
     if z < -1:
-        parts.append(flat(*place.bounds[:, :2], z, material))
+        parts.append(flat(place.bounds[0, :2], place.bounds[1, :2], z, material))
     return parts
 
 

@@ -83,7 +83,8 @@ def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: i
 def _areas(mesh: TexturedMesh, count: int) -> Float:
     """(M,) square metres of each part."""
     a, b, c = mesh.vertices[mesh.faces].swapaxes(0, 1)
-    return np.bincount(mesh.face_part, np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2, count)
+    size = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2  # (F,)
+    return np.asarray(np.bincount(mesh.face_part, size, count), np.float64)
 
 
 def _cells(length: Float) -> Float:
