@@ -24,8 +24,10 @@ HALF_VOTE: Final = 1.5
 
 MAX_LEFT_OVER: Final = 0.7
 """Probability of being no object of its own from which a box that the detector does not know is dropped."""
-BULKY, WELL_SEEN = 0.4, 24
-"""... unless it is as thick as this (metres) and so many views saw it: that is a thing, though perhaps a new one."""
+BULKY: Final = 0.4
+"""... unless it is as thick as this (metres) ..."""
+WELL_SEEN: Final = 24
+"""... and so many views saw it: that is a thing, though perhaps a new one."""
 NEAR_ENOUGH: Final = 3.0
 """Metres; what no view saw from so near is not judged: from afar everything looks like a left-over."""
 LEAST_UNNAMED: Final = (0.10, 0.15)
