@@ -80,7 +80,7 @@ def _clusters(objects: Sequence[PlannedObject], generator: np.random.Generator) 
     by_rule: dict[tuple[str, str], list[Groups]] = {}
     for groups in by_noun(objects):
         first = groups[0]
-        rule = "on_any" if first.placement == "on_surface" and not first.relative_to else first.placement
+        rule: str = "on_any" if first.placement == "on_surface" and not first.relative_to else first.placement
         by_rule.setdefault((rule, first.relative_to if rule in ANCHORED else ""), []).append(groups)
     clusters: dict[Key, list[Groups]] = {}
     for (rule, anchor), found in by_rule.items():
