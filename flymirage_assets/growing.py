@@ -12,10 +12,12 @@ from typing import Any
 
 import dagster as dg
 
+from flymirage_assets.pools import POOL_OF_SERVICE, is_paid
 from flymirage_core.errors import ProductError
 from flymirage_core.scene.taxonomy import Taxonomy, standard_taxonomy
 from flymirage_core.settings import Settings
 from resources.records import ProductRecord, SceneOrigin
+from resources.services.account import Account
 from resources.store import Store
 
 LAST_PRODUCT = "prompts"
@@ -69,6 +71,24 @@ def unfinished_scenes(store: Store, instance: dg.DagsterInstance) -> list[str]:
 
 def why_stop(store: Store, settings: Settings) -> str:
     """Why no further scene may be begun, in one sentence; "" if there is no reason."""
+    return _spent_budget(store, settings) or _full_disk(store, settings)
+
+
+def _spent_budget(store: Store, settings: Settings) -> str:
+    if not is_paid(settings, tuple(POOL_OF_SERVICE)):
+        return ""
+    budget, ledger = settings.services.budget, Account(store, "", "", settings.services).ledger
+    for name, cap, since in (
+        ("night_usd", budget.night_usd, ledger.night_start()),
+        ("month_usd", budget.month_usd, ledger.month_start()),
+    ):
+        spent = ledger.spent(since=since).usd
+        if spent >= cap:
+            return f"${spent:.2f} are spent and services.budget.{name} = ${cap:.2f}: `flymirage costs` shows on what"
+    return ""
+
+
+def _full_disk(store: Store, settings: Settings) -> str:
     if not store.is_local:
         return ""
     free = shutil.disk_usage(Path(str(store.base))).free / 1e9

@@ -17,6 +17,8 @@ from flymirage_assets.growing import next_scenes, night_scenes, why_stop
 from flymirage_core.errors import BudgetError, InputError, TransientServiceError
 from flymirage_core.operation_settings import GrowthSettings
 from flymirage_core.settings import Settings
+from resources.services.account import Account
+from resources.services.ledger import Call, Ledger
 from resources.store import Store, open_store
 
 NIGHT = date(2026, 11, 21)
@@ -69,6 +71,17 @@ def test_growth_stops_before_the_disk_is_full(store: Store) -> None:
 
     assert why_stop(store, needing(0.0)) == ""
     assert "min_free_gb" in why_stop(store, needing(1e9))
+
+
+def test_growth_stops_when_the_night_has_no_money_left(store: Store) -> None:
+    settings = Settings(store=str(store.base), profile="paper", growth=GrowthSettings(min_free_gb=0.0))
+    assert why_stop(store, settings) == ""
+    ledger = Account(store, "flat", "world", settings.services).ledger
+    no_caps = dict.fromkeys(("scene_usd", "night_usd", "month_usd"), 1e9)
+    unlimited = Ledger(ledger.database, settings.services.budget.model_copy(update=no_caps))
+    spent = settings.services.budget.night_usd
+    unlimited.book(Call("1", "flat", "world", "marble", "model", spent, "2026-01"))
+    assert "night_usd" in why_stop(store, settings)
 
 
 def test_the_nightly_schedule_asks_for_each_scene_of_the_night_once(tmp_path: Path) -> None:
