@@ -1,7 +1,6 @@
 """Who runs the stages of a run. The engines are Dagster's own; the extras bring them."""
 
 import os
-from typing import cast
 
 import dagster as dg
 
@@ -20,12 +19,14 @@ def executor_of(settings: Settings) -> dg.ExecutorDefinition:
         if settings.executor == "celery":
             from dagster_celery import celery_executor
 
-            return cast(dg.ExecutorDefinition, celery_executor.configured(_celery_config()))
+            celery: dg.ExecutorDefinition = celery_executor.configured(_celery_config())
+            return celery
         if settings.executor == "ray":
             from dagster_ray import ray_executor
 
-            ray = {"address": os.environ.get("RAY_ADDRESS", "auto"), "num_cpus": 1, "env_vars": RAY_ENVIRONMENT}
-            return cast(dg.ExecutorDefinition, ray_executor.configured({"ray": ray}))
+            config = {"address": os.environ.get("RAY_ADDRESS", "auto"), "num_cpus": 1, "env_vars": RAY_ENVIRONMENT}
+            ray: dg.ExecutorDefinition = ray_executor.configured({"ray": config})
+            return ray
     except ImportError as error:
         raise InputError(
             f"executor {settings.executor!r} needs the package {error.name!r}: pip install "
