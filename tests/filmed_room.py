@@ -208,7 +208,9 @@ def scene_products(
     ]
     trajectories = Trajectories(tuple(flights))
     filmed = film(folder / scene, flights, boxes, rig)
-    settings = VerdictSettings(max_blur=1.0, max_noise=255.0, max_flicker=255.0, max_depth_jump=1.0)
+    settings = VerdictSettings(
+        max_blur=1.0, max_noise=255.0, max_flicker=255.0, max_depth_jump=1.0, min_contrast=1.0, max_floaters=1.0
+    )
     verdicts = MeasuredJudge(settings).judge(filmed, trajectories, boxes)
     tasks = tuple(Task(f.set_index, 0, f.object_id, tuple(f.positions[0]), tuple(f.target_point)) for f in flights)
     prompts = OfflinePrompter().write(scene, filmed, boxes, trajectories, verdicts)

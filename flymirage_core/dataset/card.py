@@ -117,7 +117,9 @@ def _prompts_and_splits(s: DatasetStatistics) -> list[str]:
     splits = [(f"`{k}`", str(v), SPLIT_MEANINGS.get(k, "")) for k, v in s.episodes_per_split.items()]
     return [
         "### Prompts and splits",
-        markdown_table(("kind of prompt", "prompts"), _counts(s.prompts_per_kind)),
+        markdown_table(
+            ("kind of prompt", "prompts"), _counts({**s.prompts_per_kind, "over several flights": s.long_prompts})
+        ),
         markdown_table(("split", "flights", "meaning"), splits),
         "Splits follow from hashes of the scene's kind, its key and the task set: adding scenes moves nothing. "
         f"{s.held_out_prompts} instructions of training flights are held out too (instruction-unseen).",

@@ -6,6 +6,7 @@ Layout common to all formats::
     scenes/<scene>/shard.json        what the shard was made of, its files with sizes and checksums, its statistics
     scenes/<scene>/episodes.parquet  `EPISODE_SCHEMA`: all that is known of each episode
     scenes/<scene>/boxes.parquet     the scene's objects
+    scenes/<scene>/prompts.parquet, long_prompts.parquet: all instructions, the latter over several flights of a set
     scenes/<scene>/camera.json       intrinsics, T_body_camera, frame rate
     conventions.json, statistics.json, README.md, CHANGELOG.md
 """
@@ -33,6 +34,8 @@ from flymirage_core.rendering.frames import CameraRig
 
 EXPORT_VERSION = 1
 INDEX_NAME = "export.json"
+COMMON_FILES = ("boxes.parquet", "camera.json", "episodes.parquet", "long_prompts.parquet", "prompts.parquet")
+"""Of a scene, in every format; its shard.json lists them with all its other files."""
 
 
 @dataclass(frozen=True)
@@ -251,6 +254,7 @@ def _write(form: ExportFormat, folder: Path, products: SceneProducts, before: li
     own.mkdir(parents=True)
     pq.write_table(episodes_table(episodes), own / "episodes.parquet")
     products.boxes.save(own)
+    products.prompts.save(own)
     products.frames.rig.save(own / "camera.json")
     place, names = form.write(folder, products, episodes, before)
     names = sorted([*names, *common_files(products.scene)])
@@ -276,7 +280,7 @@ def _keep(form: ExportFormat, source: Path, folder: Path, shard: Shard, before: 
 
 def common_files(scene: str) -> list[str]:
     """What every format keeps of a scene, besides its shard.json."""
-    return [f"scenes/{scene}/{name}" for name in ("boxes.parquet", "camera.json", "episodes.parquet")]
+    return [f"scenes/{scene}/{name}" for name in COMMON_FILES]
 
 
 def link_files(source: Path, folder: Path, names: Iterable[str]) -> None:

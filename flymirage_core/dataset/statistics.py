@@ -59,6 +59,7 @@ class DatasetStatistics:
     prompts: int = 0
     prompts_per_episode: float = 0.0
     prompts_per_kind: dict[str, int] = field(default_factory=dict)
+    long_prompts: int = 0  # over several flights of a set
     held_out_prompts: int = 0  # of training episodes, for the instruction-unseen test
     episodes_per_split: dict[str, int] = field(default_factory=dict)
     commonest_labels: dict[str, int] = field(default_factory=dict)  # label -> boxes, the `COMMONEST` ones
@@ -94,6 +95,7 @@ class SceneShare:
     labels: dict[str, int]  # label -> boxes
     lengths: tuple[float, ...]  # metres, of its episodes
     kinds: dict[str, int]  # prompt kind -> prompts
+    long_prompts: int
     held_out_prompts: int
     splits: dict[str, int]  # split -> episodes
     gates: dict[str, int]  # gate -> flights that failed it
@@ -123,6 +125,7 @@ class SceneShare:
             labels=_counted(box.label for box in products.boxes),
             lengths=tuple(e.report.length for e in episodes),
             kinds=_counted(p.kind for e in episodes for p in e.prompts),
+            long_prompts=len(products.prompts.long_prompts),
             held_out_prompts=sum(len(e.held_out_prompts) for e in episodes),
             splits=_counted(e.split for e in episodes),
             gates=_counted(g.gate for v in verdicts for g in v.gates if not g.passed),
@@ -169,6 +172,7 @@ def statistics_of(shares: Iterable[SceneShare]) -> DatasetStatistics:
         prompts=sum(kinds.values()),
         prompts_per_episode=round(sum(kinds.values()) / max(len(lengths), 1), 3),
         prompts_per_kind=kinds,
+        long_prompts=sum(share.long_prompts for share in shares),
         held_out_prompts=sum(share.held_out_prompts for share in shares),
         episodes_per_split={split: splits.get(split, 0) for split in SPLITS},
         usd=round(sum(share.usd for share in shares), 2),
