@@ -176,7 +176,7 @@ class TestStatistics:
     def test_counts_add_up_over_scenes_and_reasons_are_told(self, cafe: SceneProducts) -> None:
         statistics = build_manifest(iter([cafe, drop(renamed(cafe, "hall"), 0)])).statistics
         assert (statistics.scenes, statistics.flights, statistics.episodes, statistics.dropped) == (2, 6, 5, 1)
-        assert statistics.dropped_by_gate == {list(cafe.verdicts)[0].gates[1].gate: 1}
+        assert statistics.dropped_by_gate == {next(iter(cafe.verdicts)).gates[1].gate: 1}
         assert statistics.labels == 4 and statistics.objects_per_scene["median"] == 5
         assert sum(statistics.prompts_per_kind.values()) == statistics.prompts
         lengths = [f.report.length for f in cafe.trajectories]
