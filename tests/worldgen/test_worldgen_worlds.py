@@ -17,6 +17,7 @@ from flymirage_core.worldgen.lighting import Illumination, Lamps, bake, direct_l
 from flymirage_core.worldgen.meshes import textured_mesh
 from flymirage_core.worldgen.model import OfflinePainter, OfflineWorldModel, _built
 from flymirage_core.worldgen.parts import Finish, box, paint
+from flymirage_core.worldgen.place import place_for
 from flymirage_core.worldgen.rays import RayCaster
 from flymirage_core.worldgen.reference import ReferenceTracer
 from flymirage_core.worldgen.sampling import OVERLAP, lit_world
@@ -28,7 +29,7 @@ SMALL = GenerationSettings(gaussians=60_000)
 
 @pytest.fixture(scope="module")
 def description():
-    return OfflineSceneWriter().describe("demo-0000")
+    return flat()
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +56,7 @@ def test_from_c_every_direction_ends_in_the_room(description, world):
     intrinsics = Intrinsics.from_horizontal_fov(64, 64, np.pi / 2)
     directions = [*np.eye(3), *-np.eye(3)]
     cameras = [Camera(intrinsics, look_along(world.centre, d)) for d in directions]
-    x, y, z = description.dimensions
+    x, y, z = build_truth(description).dimensions
     for picture in CpuRasterizer().render(world.cloud, cameras):
         assert picture.alpha.min() > 0.8
         u, v = np.meshgrid((np.arange(64) + 0.5) / 32 - 1, (np.arange(64) + 0.5) / 32 - 1)
@@ -65,11 +66,12 @@ def test_from_c_every_direction_ends_in_the_room(description, world):
 
 
 def test_splats_lie_inside_of_the_room_and_are_flat(description, world):
-    x, y, z = description.dimensions
+    low, high = place_for(description).bounds
     means = world.cloud.means
-    assert (np.abs(means[:, :2]) <= np.array([x, y]) / 2 + 0.15).all()  # panes lie behind the walls' faces
+    assert (means[:, :2] >= low[:2] - 0.15).all()  # panes lie behind the walls' faces
+    assert (means[:, :2] <= high[:2] + 0.15).all()
     assert means[:, 2].min() > -0.01
-    assert means[:, 2].max() < z + 0.01
+    assert means[:, 2].max() < high[2] + 0.01
     ordered = np.sort(world.cloud.scales, axis=1)
     assert np.median(ordered[:, 0] / ordered[:, 1]) < 0.2
 
@@ -90,7 +92,7 @@ def test_the_collider_is_the_same_place_as_the_splats(description, world):
     intrinsics = Intrinsics.from_horizontal_fov(9, 9, 0.02)
     cameras = [Camera(intrinsics, look_along(world.centre, d)) for d in (*np.eye(3), *-np.eye(3))]
     seen = [v.depth[4, 4] for v in CpuRasterizer().render(world.cloud, cameras)]
-    np.testing.assert_allclose(distance, seen, atol=0.06)
+    np.testing.assert_allclose(distance, seen, atol=0.1)
 
 
 def test_no_view_in_the_open_air_is_a_hole():
