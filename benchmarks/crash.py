@@ -89,6 +89,8 @@ def kill_rounds(folder: Path, wanted: int, expected: dict[str, str], usual: floa
             if not killed:
                 process.communicate()
             counts["kills"] += killed
+            if killed and counts["kills"] % 10 == 0:
+                print(f"    {counts['kills']} kills, wrong products seen: {counts['wrong products seen']}", flush=True)
             with contextlib.suppress(FileNotFoundError):
                 seen = digests(scene, "scene-0001")
                 counts["looks at the store"] += 1

@@ -50,7 +50,8 @@ def close_dead_runs(instance: dg.DagsterInstance) -> int:
 
     The daemon then runs them again once, from the stage that failed; so does the same command.
     """
-    running = instance.get_runs(dg.RunsFilter(statuses=[dg.DagsterRunStatus.STARTED, dg.DagsterRunStatus.STARTING]))
+    begun = [dg.DagsterRunStatus.NOT_STARTED, dg.DagsterRunStatus.STARTING, dg.DagsterRunStatus.STARTED]
+    running = instance.get_runs(dg.RunsFilter(statuses=begun))
     dead = [run for run in running if _is_dead(run.tags)]
     for run in dead:
         instance.report_run_failed(run, "the process of this run is gone; run the command again to carry on")
