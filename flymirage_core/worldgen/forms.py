@@ -277,7 +277,7 @@ def frame_of(material: Material, size: Vector, bar: float, base: Vector = (0.0, 
 
 def struts(material: Material, points: Sequence[ArrayLike], radius: float) -> list[Part]:
     """Separate straight bars between successive points."""
-    return [pipe(material, [a, b], radius) for a, b in pairwise(points)]
+    return [pipe(material, np.array([a, b], float), radius) for a, b in pairwise(points)]
 
 
 def bolts(material: Material, radius: float, count: int, size: float, height: float) -> list[Part]:

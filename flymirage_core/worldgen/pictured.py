@@ -43,7 +43,7 @@ def _landscape(uv: Float, extent: Extent, seed: int, words: str, colour: Colour,
     for level, tone in ((0.55, (0.2, 0.27, 0.34)), (0.4, (0.13, 0.2, 0.13)), (0.22, (0.32, 0.3, 0.1))):
         ridge = level + 0.12 * value_noise(np.stack([x * 2.2 / level, 0 * x], 1), seed + int(level * 100))
         image[y < ridge] = np.array(tone) * (0.8 + 0.4 * lattice_hash(np.array([[seed]]), int(level * 10)))
-    return image * (1 + 0.10 * value_noise(uv * 25.0, seed))[:, None]
+    return np.asarray(image * (1 + 0.10 * value_noise(uv * 25.0, seed))[:, None])
 
 
 def _hue(angle: Float, level: Float) -> Float:
