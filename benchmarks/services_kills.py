@@ -11,6 +11,7 @@ import json
 import multiprocessing
 import os
 import random
+import signal
 import sys
 import tempfile
 import time
@@ -173,6 +174,8 @@ def fly_through_fire(scenes: int, seed: int) -> dict[str, object]:
 
     chance = random.Random(seed)
     outcomes: list[Outcome] = []
+    ended: list[int] = []  # asked to end, it reports on the scenes so far
+    signal.signal(signal.SIGTERM, lambda number, _: ended.append(number))
     with (
         tempfile.TemporaryDirectory(dir=memory if (memory := Path("/dev/shm")).exists() else None) as folder,
         paper_services(originals_of(box([-2, -2, 0], [2, 2, 2.6], step=0.4))) as services,
@@ -199,6 +202,8 @@ def fly_through_fire(scenes: int, seed: int) -> dict[str, object]:
         }
         for i in range(scenes):
             outcome = Outcome(f"scene-{i:04d}", switch_on_faults(services, chance))
+            if ended:
+                break
             for attempt in range(ATTEMPTS):
                 is_killed = attempt < KILLS_PER_SCENE and chance.random() < 0.85
                 usual = float(np.median([o.seconds for o in outcomes[-9:]])) if outcomes else 2.0
