@@ -22,7 +22,7 @@ HALF_VOTE: Final = 1.5
 """Weight of votes that is worth a score of one half."""
 
 
-MAX_LEFT_OVER: Final = 0.8
+MAX_LEFT_OVER: Final = 0.75
 """Probability of being no object of its own from which a box that the detector does not know is dropped."""
 BULKY: Final = 0.4
 """... unless it is as thick as this (metres) ..."""
