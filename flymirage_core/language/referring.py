@@ -137,8 +137,11 @@ class _Description:
         self._place_list: list[Term] | None = None
 
     def object_centred(self) -> Iterator[Meaning]:
-        """The noun, refined by size or by where the drone sees it; a thing without name needs a shape at least."""
-        kernels: list[Terms] = [(s, self.noun) for s in self._shapes()] if self.nameless else [(self.noun,)]
+        """The noun, refined by size or by where the drone sees it; a thing without name has its shape and colour."""
+        colours = [look for look in self.looks if isinstance(look, Colour)]
+        kernels: list[Terms] = [(self.noun,)]
+        if self.nameless:
+            kernels = [(shape, *colours, self.noun) for shape in self._shapes()]
         ranks: list[Term] = [Most(by) for by in BY_PLACE]
         ranks += [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
         yield from (Meaning(kernel) for kernel in kernels)
@@ -146,8 +149,6 @@ class _Description:
         yield from _with(kernels, self.sides)
         yield from _with(kernels, ranks)
         yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
-        if self.nameless:
-            yield from _with([(self.noun,)], self.sizes[:3])
 
     def relative(self) -> Iterator[Meaning]:
         """The noun with a relation to the most sensible landmarks; refined by looks, a side, or a second relation."""
@@ -228,7 +229,7 @@ def _landmark_phrase(box: ObjectBox, resolver: Resolver) -> Meaning | None:
     noun: Term = Noun(UNNAMED if nameless else box.label)
     looks = _looks(box)
     refined: list[Terms] = [(noun,), *((noun, look) for look in looks), *((noun, *p) for p in combinations(looks, 2))]
-    refined += [(noun, Most(by)) for by in BY_SIZE[:3]]
+    refined += [] if nameless else [(noun, Most(by)) for by in BY_SIZE[:3]]
     sure = next((m for m in map(Meaning, refined) if resolver.picks(m, box.object_id)), None)
     return sure or (None if nameless else Meaning((noun,)))
 

@@ -73,7 +73,7 @@ INTRODUCED = (
     "You can see {a}. Go to {it}.",
     "Look for {a}, then approach {it}.",
     "Spot {a}, then head for {it}.",
-    "There {is} {a}; that is your goal.",
+    "There {is} {a}. Make {it} your goal.",
     "Somewhere there {is} {a}. Find {it}.",
 )
 """Sentences that introduce the thing before sending the drone there; they need an indefinite noun phrase."""
