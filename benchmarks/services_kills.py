@@ -207,7 +207,12 @@ def fly_through_fire(scenes: int, seed: int) -> dict[str, object]:
             for attempt in range(ATTEMPTS):
                 is_killed = attempt < KILLS_PER_SCENE and chance.random() < 0.85
                 usual = float(np.median([o.seconds for o in outcomes[-9:]])) if outcomes else 2.0
-                run_process(outcome, environment, chance.uniform(0.0, 1.1 * usual) if is_killed else None)
+                try:
+                    run_process(outcome, environment, chance.uniform(0.0, 1.1 * usual) if is_killed else None)
+                except EOFError:  # the signal ended the server that forks, too
+                    if not ended:
+                        raise
+                    break
                 if outcome.complete:
                     break
             outcomes.append(outcome)
