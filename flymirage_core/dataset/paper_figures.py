@@ -111,6 +111,7 @@ def share_of_tables(scene: str, folders: Mapping[str, Path]) -> SceneShare:
         labels=dict(labels),
         lengths=tuple(f["length"] for f in episodes),
         kinds=dict(Counter(p["kind"] for p in prompts)),
+        long_prompts=pq.read_metadata(folders["prompts"] / "long_prompts.parquet").num_rows,
         held_out_prompts=0,
         splits={},
         gates=dict(Counter(g["gate"] for v in verdicts for g in v["gates"] if not g["passed"])),

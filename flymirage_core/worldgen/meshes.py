@@ -64,14 +64,15 @@ def textured_mesh(parts: Sequence[Part]) -> TexturedMesh:
     columns: list[tuple[Float, NDArray[np.int64], NDArray[np.int64], Float, Float, Float]] = []
     start = 0
     for number, part in enumerate(parts):
-        for local, faces, uv, extent in _pieces(part):
-            placed = local @ part.rotation.T + np.asarray(part.offset)
-            extents = np.tile(extent, (len(local), 1))
-            seen = faces if np.linalg.det(part.rotation) > 0 else faces[:, ::-1]  # a mirror image turns corners round
-            columns.append((placed, seen + start, np.full(len(faces), number), uv, local, extents))
-            start += len(local)
-    arrays = [np.concatenate(column) for column in zip(*columns, strict=True)]
-    return TexturedMesh(*arrays, tuple(p.material for p in parts))
+        for points, triangles, coordinates, extent in _pieces(part):
+            placed = points @ part.rotation.T + np.asarray(part.offset)
+            mirrored = np.linalg.det(part.rotation) < 0  # which turns corners round
+            seen = triangles[:, ::-1] if mirrored else triangles
+            sizes = np.tile(extent, (len(points), 1))
+            columns.append((placed, seen + start, np.full(len(triangles), number), coordinates, points, sizes))
+            start += len(points)
+    vertices, faces, numbers, uv, local, extents = (np.concatenate(column) for column in zip(*columns, strict=True))
+    return TexturedMesh(vertices, faces, numbers, uv, local, extents, tuple(p.material for p in parts))
 
 
 def corners_of(part: Part) -> Float:

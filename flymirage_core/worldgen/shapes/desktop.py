@@ -355,8 +355,8 @@ def potted_orchid(size: Vector, f: Finish) -> list[Part]:
     pot = turned(f.main, [(0, 0), (0.055, 0), (0.07, 0.11), (0.062, 0.11), (0.055, 0.095), (0, 0.095)])
     green = greenery(f)
     stems, centres, lengths, widths = [], [], [], []
-    for a, high in ((0.3, 0.46), (2.6, 0.4)):
-        out = np.array([np.cos(a), np.sin(a), 0.0])
+    for turn, high in ((0.3, 0.46), (2.6, 0.4)):
+        out = np.array([np.cos(turn), np.sin(turn), 0.0])
         path = [
             (0, 0, 0.09),
             tuple(out * 0.02 + [0, 0, 0.7 * high]),
