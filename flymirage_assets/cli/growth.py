@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from dagster import DagsterInstance
 
 DEMO_SCENE = "demo"
+DEMO_PLACE = ("leisure and hospitality venues", "cafe")
+"""A room that is quickly built, with much to fly to."""
 SETTINGS_FILE = Path("flymirage.toml")
 DEMO_SETTINGS = """\
 # Written by `flymirage demo`: a data set for a laptop, 40 flights instead of the paper's 100, in smaller pictures.
@@ -38,7 +40,8 @@ def demo(out: Annotated[Path, typer.Option(help="where the LeRobot folder goes")
     from resources.records import SceneOrigin
 
     store = project_store()
-    store.register(SceneOrigin(scene=DEMO_SCENE, kind="generated"))
+    category, subcategory = DEMO_PLACE
+    store.register(SceneOrigin(scene=DEMO_SCENE, kind="generated", category=category, subcategory=subcategory))
     make_scenes([DEMO_SCENE])
     lerobot(out)
     index = gallery(out.parent / "gallery")
