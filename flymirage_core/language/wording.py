@@ -136,8 +136,8 @@ class Speaker:
         'an armchair'
         """
         core = self._core(meaning)
-        article = "" if is_plural(meaning.noun) else f"{article_of(core)} "
-        return f"{article}{core}{self._place(meaning)}"
+        article = "some" if is_plural(meaning.noun) else article_of(core)
+        return f"{article} {core}{self._place(meaning)}"
 
     def _core(self, meaning: Meaning) -> str:
         """Ordinal, then adjectives in English order (size, shape, colour, material), then the noun."""

@@ -128,6 +128,9 @@ def test_the_demo_is_one_command_with_a_table_and_the_places_of_things(project: 
 
 @pytest.mark.slow
 def test_a_captured_world_becomes_a_data_set(captured_worlds: Path, project: Project) -> None:
-    outcome = project.flymirage("import", str(captured_worlds / "bedroom_sw_lod2.spz"), "--scene", "my-bedroom")
+    closer = {"FLYMIRAGE_VIEWS__WIDTH": "320", "FLYMIRAGE_VIEWS__HEIGHT": "240", "FLYMIRAGE_TASKS__SETS": "6"}
+    outcome = project.flymirage(
+        "import", str(captured_worlds / "bedroom_sw_lod2.spz"), "--scene", "my-bedroom", **closer
+    )
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     assert len(Trajectories.load(project.store.folder("trajectories", "my-bedroom"))) > 0

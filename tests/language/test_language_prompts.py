@@ -221,7 +221,7 @@ class TestWording:
         [
             ("armchair", "an armchair"),
             ("tv", "a TV"),
-            ("curtains", "curtains"),
+            ("curtains", "some curtains"),
             ("wine glass", "a wine glass"),
             ("hourglass", "an hourglass"),
             ("utensil rack", "a utensil rack"),
