@@ -100,6 +100,16 @@ def test_costs_are_in_the_records_and_in_the_ledger(grown) -> None:
     assert 1.9 < total < 2.2 and all(line["spent"]["unsettled"] == 0 for line in lines)
 
 
+def test_no_key_is_in_the_store_in_dagsters_home_or_in_what_was_printed(grown) -> None:
+    """Dagster's home holds all that the UI shows: runs, events, metadata and logs."""
+    project, printed = grown
+    files = [path for path in (project.folder / ".flymirage").rglob("*") if path.is_file()]
+    assert any("dagster" in path.parts and path.suffix == ".db" for path in files)
+    for key in KEYS.values():
+        assert key not in printed
+        assert [path for path in files if key.encode() in path.read_bytes()] == []
+
+
 def test_running_again_asks_nobody(grown) -> None:
     project, _ = grown
     fakes = (project.services.openai, project.services.dashscope, project.services.marble)
