@@ -1,6 +1,7 @@
 """The requests' texts: each is pinned, so that a change is seen, is meant, and shows in provenance."""
 
 import hashlib
+import json
 
 import pytest
 from fake_openai import schema_problem
@@ -30,7 +31,16 @@ def test_each_text_is_pinned(package: str, name: str) -> None:
     assert (template.version, hashlib.sha256(text.encode()).hexdigest()[:12]) == TEMPLATES[package, name]
 
 
-@pytest.mark.parametrize("answer", [SceneDesign, VlmVerdict, Instructions])
+SCHEMAS = {SceneDesign: "a9f42307f4fd", VlmVerdict: "fb9109af701b", Instructions: "847f1cf5a84e"}
+
+
+@pytest.mark.parametrize("answer", SCHEMAS)
+def test_each_answers_schema_is_pinned(answer) -> None:
+    text = json.dumps(strict_schema(answer), sort_keys=True)
+    assert hashlib.sha256(text.encode()).hexdigest()[:12] == SCHEMAS[answer]
+
+
+@pytest.mark.parametrize("answer", SCHEMAS)
 def test_each_answers_schema_is_one_that_strict_output_takes(answer) -> None:
     assert schema_problem(strict_schema(answer)) is None
 
