@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.errors import InputError, ProductError
+from flymirage_core.rendering.frame_writer import FrameWriter
 
 UInt16 = NDArray[np.uint16]
 
@@ -23,24 +24,13 @@ the renderer would wait for (benchmarks/RENDERING.md)."""
 NO_DATE = (1980, 1, 1, 0, 0, 0)
 
 
-class ImageStackWriter:
+class ImageStackWriter(FrameWriter):
     """Writes frame after frame into one archive, which is whole when the ``with`` block has ended."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        self.count = 0
+        super().__init__(path)
         self._shape: tuple[int, ...] = ()
         self._archive: zipfile.ZipFile | None = None
-
-    def __enter__(self) -> "ImageStackWriter":
-        self.open()
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, *rest: object) -> None:
-        if kind is None:
-            self.close()
-        else:
-            self.abandon()
 
     def open(self) -> None:
         """Make the file; what comes next must end in `close` or `abandon`."""

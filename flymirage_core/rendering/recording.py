@@ -22,6 +22,7 @@ from scipy.spatial.transform import Rotation
 from flymirage_core.errors import ProductError
 from flymirage_core.rendering.camera import Camera
 from flymirage_core.rendering.cpu import usable_cores
+from flymirage_core.rendering.frame_writer import FrameWriter
 from flymirage_core.rendering.frames import (
     FRAME_SCHEMA,
     TARGET_SEEN,
@@ -204,7 +205,7 @@ class _Film:
 class _Encoder:
     """A video writer on a thread of its own, which starts with the first picture."""
 
-    def __init__(self, writer: VideoWriter | ImageStackWriter) -> None:
+    def __init__(self, writer: FrameWriter) -> None:
         self._writer = writer
         self._pool: ThreadPoolExecutor | None = None
         self._pending: deque[Future[Any]] = deque()

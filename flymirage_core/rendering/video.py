@@ -6,7 +6,6 @@ The same frames give the same bytes whatever else the machine does: one encoder 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import av
@@ -16,6 +15,7 @@ from av.video.reformatter import ColorRange, Colorspace
 from numpy.typing import NDArray
 
 from flymirage_core.errors import InputError, ProductError
+from flymirage_core.rendering.frame_writer import FrameWriter
 
 GROUP_OF_PICTURES = 2
 """Frames from one key frame to the next; small, so that a trainer can jump to any frame (LeRobot's choice)."""
@@ -29,27 +29,14 @@ YUV_FROM_RGB = np.array(
 """BT.601, limited range (3, 4): of 8-bit RGB and 1."""
 
 
-class VideoWriter:
+class VideoWriter(FrameWriter):
     """Encodes RGB frames at ``rate`` Hz into one H.264 file (yuv420p), whole when the ``with`` block has ended."""
 
     def __init__(self, path: Path, rate: float) -> None:
-        self.path = path
-        self.count = 0
+        super().__init__(path)
         self._rate = Fraction(rate).limit_denominator(1001)
         self._container: Any = None
         self._stream: Any = None
-
-    def __enter__(self) -> "VideoWriter":
-        self.open()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if kind is None:
-            self.close()
-        else:
-            self.abandon()
 
     def open(self) -> None:
         """Make the file; what comes next must end in `close` or `abandon`."""

@@ -1,11 +1,11 @@
 """`SceneDesign`: a place in words and numbers, the one schema that an LLM and the offline writer both fill.
 
-The fields' descriptions are what an LLM reads (`design_schema`). Lengths in metres; zones and the whole are given as
-(x, y, z) = length, width, height.
+The fields' descriptions are what an LLM reads (`asking.strict_schema`). Lengths in metres; zones and the whole are given
+as (x, y, z) = length, width, height.
 """
 
 from collections import Counter
-from typing import Any, Literal, Self
+from typing import Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -149,24 +149,3 @@ def _check_objects(objects: tuple[PlannedObject, ...], zones: set[str]) -> None:
             )
         if planned.placement in NEEDS_ANOTHER and not planned.relative_to:
             raise ValueError(f"object {planned.noun!r} is placed {planned.placement!r}; relative_to must say of what")
-
-
-def design_schema() -> dict[str, Any]:
-    """The JSON schema of `SceneDesign` in the subset that strict structured output takes: no references, defaults or
-    tuple types, every field required, no other fields."""
-    schema = SceneDesign.model_json_schema()
-    return _strict(schema, schema.pop("$defs"))
-
-
-def _strict(node: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:
-    if "$ref" in node:
-        node = definitions[node["$ref"].rsplit("/", 1)[1]] | {k: v for k, v in node.items() if k != "$ref"}
-    result = {k: v for k, v in node.items() if k not in ("default", "title", "minLength", "prefixItems")}
-    if "prefixItems" in node:
-        result["items"] = node["prefixItems"][0]  # (x, y, z) are alike
-    if "items" in result:
-        result["items"] = _strict(result["items"], definitions)
-    if "properties" in node:
-        result["properties"] = {name: _strict(field, definitions) for name, field in node["properties"].items()}
-        result |= {"required": list(result["properties"]), "additionalProperties": False}
-    return result

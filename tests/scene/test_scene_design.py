@@ -5,7 +5,8 @@ import json
 import pytest
 from pydantic import ValidationError
 
-from flymirage_core.scene.design import SceneDesign, design_schema
+from flymirage_core.asking import strict_schema
+from flymirage_core.scene.design import SceneDesign
 from flymirage_core.scene.writer import OfflineSceneWriter
 
 ONE = OfflineSceneWriter().describe("scene-0001")
@@ -21,7 +22,7 @@ def nodes(schema):
 
 
 def test_a_model_must_fill_every_field_and_no_other():
-    for node in nodes(design_schema()):
+    for node in nodes(strict_schema(SceneDesign)):
         if node.get("type") == "object":
             assert node["required"] == list(node["properties"])
             assert node["additionalProperties"] is False
@@ -30,14 +31,14 @@ def test_a_model_must_fill_every_field_and_no_other():
 def test_the_schema_uses_only_what_strict_structured_output_takes():
     allowed = {"type", "description", "properties", "required", "additionalProperties", "items", "enum", "minItems"}
     allowed |= {"maxItems", "minimum", "maximum"}
-    for node in nodes(design_schema()):
+    for node in nodes(strict_schema(SceneDesign)):
         assert set(node) <= allowed
         assert "type" in node
-    assert "$ref" not in json.dumps(design_schema())
+    assert "$ref" not in json.dumps(strict_schema(SceneDesign))
 
 
 def test_every_field_that_is_not_plain_tells_a_model_what_it_is():
-    top = design_schema()["properties"]
+    top = strict_schema(SceneDesign)["properties"]
     for group in (top["objects"]["items"], top["zones"]["items"]):
         assert all("description" in field for field in group["properties"].values())
 
