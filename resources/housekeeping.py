@@ -45,15 +45,20 @@ def collect_garbage(store: Store, older_than: float, removing: bool) -> Freed:
     return Freed(len(doomed), size)
 
 
+def check_known(store: Store, scene: str) -> None:
+    """Raises `SceneKeyError` for what can be no scene's key, `InputError` for a scene that nobody knows."""
+    check_scene_key(scene)
+    if scene not in store.scenes():
+        raise InputError(f"scene {scene!r} is not known: `flymirage status` lists the scenes")
+
+
 def remove_scene(store: Store, scene: str) -> Freed:
     """Remove everything of a scene: products, what services answered, its world file, its registration.
 
     Pointers go first, so nobody reads a product that is half gone; the registration goes last, so that a removal that
     was interrupted can be repeated. Raises `InputError` for a scene that nobody knows.
     """
-    check_scene_key(scene)
-    if scene not in store.scenes():
-        raise InputError(f"scene {scene!r} is not known: `flymirage status` lists the scenes")
+    check_known(store, scene)
     folders = [store.base / "products" / asset / scene for asset in store.assets()]
     folders += [store.base / "imports" / scene, store.base / "services" / scene]
     folders = [folder for folder in folders if folder.exists()]

@@ -32,8 +32,9 @@ def project_settings() -> Settings:
     except ValidationError as error:
         first = error.errors()[0]
         field = ".".join(str(part) for part in first["loc"])
+        problem = "there is no such setting" if first["type"] == "extra_forbidden" else first["msg"]
         raise InputError(
-            f"setting {field!r} is {first.get('input')!r}: {first['msg']}; it comes from flymirage.toml or from an "
+            f"setting {field!r} is {first.get('input')!r}: {problem}; it comes from flymirage.toml or from an "
             "environment variable that begins with FLYMIRAGE_"
         ) from error
 

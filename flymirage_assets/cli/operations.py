@@ -28,11 +28,13 @@ def remove(
     """Remove a scene everywhere: its products, its world file, paid answers, and its runs in Dagster."""
     from flymirage_assets.report import human_bytes
     from flymirage_assets.runs import dagster_instance, forget_scene
-    from resources.housekeeping import remove_scene
+    from resources.housekeeping import check_known, remove_scene
 
+    store = project_store()
+    check_known(store, scene)
     if not yes:
         typer.confirm(f"remove scene {scene!r} with all its products?", abort=True)
-    freed = remove_scene(project_store(), scene)
+    freed = remove_scene(store, scene)
     with dagster_instance() as instance:
         runs = forget_scene(instance, scene)
     console.print(
