@@ -1,7 +1,7 @@
 """`SceneDesign`: a place in words and numbers, the one schema that an LLM and the offline writer both fill.
 
-The fields' descriptions are what an LLM reads (`asking.strict_schema`). Lengths in metres; zones and the whole are given
-as (x, y, z) = length, width, height.
+The fields' descriptions are what an LLM reads (`asking.strict_schema`). Lengths in metres; zones and the whole are
+given as (x, y, z) = length, width, height.
 """
 
 from collections import Counter
