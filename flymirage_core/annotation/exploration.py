@@ -18,6 +18,7 @@ from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.placements import four_view_rig
 from flymirage_core.settings import ExplorationSettings
 
+Bool = NDArray[np.bool_]
 Float64 = NDArray[np.float64]
 
 CENTRE_TOLERANCE: Final = 0.5
@@ -80,8 +81,7 @@ def exploration_paths(
     if not targets.boxes:
         return []
     inflated, start = _inflated_round(grid, np.asarray(centre, float), settings.clearance)
-    cells = np.argwhere(reachable(inflated, start))  # (M, 3)
-    places = inflated.centre_of(cells)  # (M, 3)
+    places = reachable(inflated, start)  # (X, Y, Z)
     return [_path_to(box, inflated, start, places, settings) for box in targets.boxes]
 
 
@@ -100,9 +100,9 @@ def _inflated_round(grid: OccupancyGrid, centre: Float64, clearance: float) -> t
 
 
 def _path_to(
-    box: ObjectBox, inflated: OccupancyGrid, start: Float64, places: Float64, settings: ExplorationSettings
+    box: ObjectBox, inflated: OccupancyGrid, start: Float64, places: Bool, settings: ExplorationSettings
 ) -> ExplorationPath:
-    goal = _viewpoint(box, start, places, settings.stand_off)
+    goal = _viewpoint(box, inflated, start, places, settings.stand_off)
     path = smooth_path(inflated, shortest_path(inflated, start, goal))
     positions = resample_path(path, settings.rig_spacing)  # (K, 3)
     gap = float(box.distance(positions[-1]))
@@ -111,14 +111,31 @@ def _path_to(
     )
 
 
-def _viewpoint(box: ObjectBox, start: Float64, places: Float64, stand_off: float) -> Float64:
-    """The place (3,) to look from: of those within the stand-off the nearest to c, else the nearest to the box."""
-    gaps = box.distance(places)  # (M,)
-    near = gaps <= stand_off
-    if not near.any():
-        return np.asarray(places[int(np.argmin(gaps))])
-    candidates = places[near]
-    return np.asarray(candidates[int(np.argmin(np.linalg.norm(candidates - start, axis=1)))])
+def _viewpoint(box: ObjectBox, grid: OccupancyGrid, start: Float64, places: Bool, stand_off: float) -> Float64:
+    """The place (3,) to look from: of those within the stand-off the nearest to c, else the nearest to the box.
+
+    ``places``: (X, Y, Z) which voxels can be reached; some can. They are looked for ever farther from the box, as in
+    the open air there are millions.
+    """
+    reach = stand_off
+    while True:
+        candidates = _places_near(box, grid, places, reach)  # (M, 3)
+        gaps = box.distance(candidates)  # (M,)
+        if (gaps <= stand_off).any():
+            candidates = candidates[gaps <= stand_off]
+            return np.asarray(candidates[int(np.argmin(np.linalg.norm(candidates - start, axis=1)))])
+        if (gaps <= reach).any():
+            return np.asarray(candidates[int(np.argmin(gaps))])
+        reach *= 2
+
+
+def _places_near(box: ObjectBox, grid: OccupancyGrid, places: Bool, reach: float) -> Float64:
+    """Centres (M, 3) of the ``places`` in the upright block of voxels round the box grown by ``reach`` metres."""
+    lower, upper = box.corners.min(axis=0) - reach, box.corners.max(axis=0) + reach
+    first = np.clip(grid.index_of(lower), 0, grid.state.shape)
+    last = np.clip(grid.index_of(upper) + 1, 0, grid.state.shape)
+    block = places[first[0] : last[0], first[1] : last[1], first[2] : last[2]]
+    return grid.centre_of(np.argwhere(block) + first)
 
 
 def smooth_headings(positions: Float64) -> Float64:

@@ -16,7 +16,12 @@ def clearance_field(grid: OccupancyGrid) -> Float32:
     Euclidean distance transform between centres would be up to 0.37 voxels too long beside corners. Outside of the
     grid is blocked.
     """
-    squared = np.where(grid.blocked, 0, np.inf).astype(np.float32)  # (X, Y, Z) voxels^2
+    return _clearance_up_to(grid, np.inf)
+
+
+def _clearance_up_to(grid: OccupancyGrid, limit: float) -> Float32:
+    """`clearance_field` where it is less than ``limit`` metres, ``limit`` elsewhere: the less, the faster."""
+    squared = np.where(grid.blocked, 0, (limit / grid.resolution) ** 2).astype(np.float32)  # (X, Y, Z) voxels^2
     for axis in range(3):
         lines = np.ascontiguousarray(np.moveaxis(squared, axis, -1))
         squared = np.moveaxis(_line_distances(lines.reshape(-1, lines.shape[-1])).reshape(lines.shape), -1, axis)
@@ -38,7 +43,7 @@ def inflate(grid: OccupancyGrid, radius: float) -> OccupancyGrid:
     becomes blocked becomes OCCUPIED; nothing becomes free.
     """
     tolerance = 1e-4 * grid.resolution
-    reached = (grid.state == FREE) & (clearance_field(grid) < radius - tolerance)
+    reached = (grid.state == FREE) & (_clearance_up_to(grid, radius) < radius - tolerance)
     return OccupancyGrid(np.where(reached, OCCUPIED, grid.state).astype(np.uint8), grid.origin, grid.resolution)
 
 
