@@ -27,7 +27,7 @@ from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.rendering.frames import LEVEL_CAMERA, BodyPath, CameraRig, cameras_along
 from flymirage_core.rendering.rasterizer import Rendering
 from flymirage_core.rendering.recording import record_frames
-from flymirage_core.rendering.video import i420
+from flymirage_core.rendering.video import yuv420p
 from flymirage_core.rendering.views import depth_to_millimetres
 from flymirage_core.settings import CleaningSettings
 from flymirage_core.splats.cloud import GaussianCloud
@@ -84,7 +84,7 @@ def compare_codecs(pictures: list[Rendering]) -> None:
         ("H.264 crf 18 ultrafast", {"crf": "18", "preset": "ultrafast"}),
         ("H.264 qp 18 ultrafast", {"qp": "18", "preset": "ultrafast"}),
     ):
-        size, cost, back = encoded(map(i420, colours), "libx264", "yuv420p", options, "mp4")
+        size, cost, back = encoded(map(yuv420p, colours), "libx264", "yuv420p", options, "mp4")
         pairs = zip(colours, (cv2.cvtColor(b, cv2.COLOR_YUV2RGB_I420) for b in back), strict=True)
         noise = np.mean([np.mean((a.astype(float) - b) ** 2) for a, b in pairs])
         print(f"  {name:<34}{size:>8.1f}{cost:>8.1f}{10 * np.log10(255**2 / noise):>9.1f}")

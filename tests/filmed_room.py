@@ -15,7 +15,7 @@ from flymirage_core.navigation.task_sets import Task, TaskSets
 from flymirage_core.navigation.trajectories import Flight, FlightReport, Trajectories
 from flymirage_core.rendering.camera import Camera, Intrinsics
 from flymirage_core.rendering.frames import BodyPath, CameraRig, Frames, cameras_along
-from flymirage_core.rendering.rasterizer import Rendering
+from flymirage_core.rendering.rasterizer import Rasterizer, Rendering
 from flymirage_core.rendering.recording import record_frames
 from flymirage_core.scene.description import Provenance, SceneDescription
 from flymirage_core.scene.design import Light, Zone
@@ -120,7 +120,7 @@ def camera_at(flight: Flight, time: float, rig: CameraRig = RIG) -> Camera:
 
 
 @dataclass(frozen=True)
-class RayCaster:
+class RayCaster(Rasterizer):
     """A rasterizer that sees boxes instead of splats; ``spoil`` damages each picture."""
 
     boxes: BoxMap

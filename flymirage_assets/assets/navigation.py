@@ -45,7 +45,7 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return fly_task_sets(task_sets, grid, boxes, chosen.planner, chosen.quadrotor, stage.rng("trajectories"))
 
     @product_asset(
-        version="3", group=group, settings=settings, sections=["frames"], tools=["rasterizer"], draw=previews.frames
+        version="4", group=group, settings=settings, sections=["frames"], tools=["rasterizer"], draw=previews.frames
     )
     def frames(stage: Stage, world: World, boxes: BoxMap, trajectories: Trajectories) -> Frames:
         """RGB video, lossless depth video and, at every frame, the camera's pose and how much shows the target."""

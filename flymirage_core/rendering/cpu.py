@@ -1,10 +1,7 @@
 """`CpuRasterizer`: Gaussians to RGB, expected depth and alpha on all cores. Its kernels are in `cpu_kernels`."""
 
-import os
-import sys
-from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from queue import SimpleQueue
 from typing import TypeVar
@@ -16,14 +13,13 @@ from flymirage_core.progress import current_listener
 from flymirage_core.rendering import cpu_kernels as kernels
 from flymirage_core.rendering import picture_kernels
 from flymirage_core.rendering.camera import Camera, Intrinsics
-from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rendering
+from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rasterizer, Rendering
+from flymirage_core.rendering.threads import in_order, usable_cores
 from flymirage_core.splats.cloud import GaussianCloud
 
 Float32 = NDArray[np.float32]
 P = TypeVar("P")
 
-LOOK_AHEAD = 2
-"""Finished frames that may wait for their reader, beyond one for each thread."""
 MAX_COORDINATE = 1e5
 """Metres. Gaussians farther from the world's origin are left out."""
 MAX_SCALE = 1e3
@@ -37,7 +33,7 @@ PATIENCE = 1.5
 """Seconds after which a person is told that kernels are being compiled; from numba's cache they come sooner."""
 
 
-class CpuRasterizer:
+class CpuRasterizer(Rasterizer):
     """Renders whole frames side by side, one on each of ``threads`` threads (0 = all cores this process may use).
 
     The same cloud and camera give the same bytes whatever the number of threads. Gaussians that cannot be drawn (not
@@ -52,53 +48,42 @@ class CpuRasterizer:
 
     def render(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator[Rendering]:
         """Pictures in the cameras' order. At most ``threads + LOOK_AHEAD`` frames are held or in the making."""
-        return self._frames(cloud, cameras, lambda *frame: rasterize(*frame).quantised())
+        return self.develop(cloud, cameras, lambda _, picture: picture)
+
+    def develop(
+        self, cloud: GaussianCloud, cameras: Sequence[Camera], finish: Callable[[int, Rendering], P]
+    ) -> Generator[P, None, None]:
+        """As `Rasterizer.develop`, on the thread that rendered the picture, while its core's cache still holds it."""
+        return self._frames(cloud, cameras, lambda number, picture: finish(number, picture.quantised()))
 
     def render_float(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator["FloatPicture"]:
         """As `render`, before rounding to 8 bits and before depth is struck out where alpha is small."""
-        return self._frames(cloud, cameras, rasterize)
+        return self._frames(cloud, cameras, lambda _, picture: picture)
 
     def _frames(
-        self, cloud: GaussianCloud, cameras: Sequence[Camera], make: "Callable[[SplatTable, Camera, Scratch], P]"
-    ) -> "Iterator[P]":
-        """What ``make`` makes of each camera on the pool's threads, in their order."""
+        self, cloud: GaussianCloud, cameras: Iterable[Camera], finish: "Callable[[int, FloatPicture], P]"
+    ) -> Generator[P, None, None]:
         compile_kernels()
         table = self._table(cloud)
         scratch: SimpleQueue[Scratch] = SimpleQueue()
         for _ in range(self.threads):
             scratch.put(Scratch.for_table(table))
 
-        def frame(camera: Camera) -> P:
+        def frame(numbered: tuple[int, Camera]) -> P:
+            number, camera = numbered
             mine = scratch.get()
             try:
-                return make(table, camera, mine)
+                return finish(number, rasterize(table, camera, mine))
             finally:
                 scratch.put(mine)
 
-        pool = ThreadPoolExecutor(self.threads, "rasterizer")
-        pending: deque[Future[P]] = deque()
-        try:
-            for camera in cameras:
-                pending.append(pool.submit(frame, camera))
-                if len(pending) >= self.threads + LOOK_AHEAD:
-                    yield pending.popleft().result()
-            while pending:
-                yield pending.popleft().result()
-        finally:
-            pool.shutdown(cancel_futures=True)
+        yield from in_order(frame, enumerate(cameras), self.threads)
 
     def _table(self, cloud: GaussianCloud) -> "SplatTable":
         prepared = self._prepared
         if prepared is None or prepared[0] is not cloud:
             self._prepared = prepared = (cloud, SplatTable.of(cloud))
         return prepared[1]
-
-
-def usable_cores() -> int:
-    """How many cores this process may use."""
-    if sys.platform == "linux":
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ from flymirage_core.errors import InputError
 from flymirage_core.rendering import cpu_kernels as kernels
 from flymirage_core.rendering.camera import Camera
 from flymirage_core.rendering.cpu import drawable
-from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rendering
+from flymirage_core.rendering.rasterizer import MIN_ALPHA_FOR_DEPTH, Rasterizer, Rendering
 from flymirage_core.splats.cloud import GaussianCloud
 
 BATCH_PIXELS = 2**23
@@ -27,7 +27,7 @@ BATCH_GAUSSIANS = 2**25
 """Most cameras times Gaussians of one call; gsplat needs about 100 bytes for each that a camera sees."""
 
 
-class GsplatRasterizer:
+class GsplatRasterizer(Rasterizer):
     """Renders batches of cameras on a CUDA card. Pictures are those of `cpu.CpuRasterizer` but for rounding.
 
     Raises `InputError`, when made, if gsplat or a CUDA card is missing.

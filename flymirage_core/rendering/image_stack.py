@@ -46,7 +46,10 @@ class ImageStackWriter(FrameWriter):
                 f"{self.path.name}: frame {self.count} is {width} x {height} pixels, the first was "
                 f"{first_width} x {first_height}; all frames of a flight must have one size"
             )
-        image = imagecodecs.jpegxl_encode(np.ascontiguousarray(frame), lossless=True, effort=EFFORT, numthreads=1)
+        self.append_image(jpeg_xl(frame))
+
+    def append_image(self, image: bytes) -> None:
+        """Write one more frame as `jpeg_xl` gives it; its size must be the first one's."""
         assert self._archive is not None  # `open` comes first
         self._archive.writestr(zipfile.ZipInfo(_member(self.count), NO_DATE), image)
         self.count += 1
@@ -62,6 +65,11 @@ class ImageStackWriter(FrameWriter):
         if self._archive is not None:
             self._archive.close()
             self._archive = None
+
+
+def jpeg_xl(frame: UInt16) -> bytes:
+    """A frame (H, W) as a JPEG XL image, without loss. Holds no GIL."""
+    return bytes(imagecodecs.jpegxl_encode(np.ascontiguousarray(frame), lossless=True, effort=EFFORT, numthreads=1))
 
 
 def read_images(path: Path, count: int) -> Iterator[UInt16]:

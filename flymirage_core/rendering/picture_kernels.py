@@ -1,4 +1,4 @@
-"""Compiled loops over the pixels of one picture: rounding, millimetres, which box a pixel shows. No GIL is held."""
+"""Compiled loops over one picture's pixels: rounding, millimetres, yuv420p, which box one shows. No GIL is held."""
 
 from typing import Any
 
@@ -30,6 +30,31 @@ def millimetres(depth: Float32, out: UInt16) -> None:
     for i in range(len(depth)):
         scaled = np.rint(depth[i] * F(1000))
         out[i] = np.uint16(scaled) if (scaled >= F(1)) & (scaled <= F(65535)) else np.uint16(0)  # NaN is neither
+
+
+@njit(**COMPILED)
+def yuv420p(rgb: NDArray[np.uint8], height: int, width: int, out: NDArray[np.uint8]) -> None:
+    """RGB (3 P,) of an even ``height`` and ``width`` to the planes Y, U, V (3/2 P,): BT.601, limited range.
+
+    The colour of four pixels is their mean. In sixteen-bit fixed point: nine tenths of the bytes are those of exact
+    arithmetic, the others are off by one.
+    """
+    half = width // 2
+    u_plane, v_plane = out[height * width :], out[height * width * 5 // 4 :]
+    for y in range(0, height, 2):
+        upper, lower = rgb[y * width * 3 : (y + 1) * width * 3], rgb[(y + 1) * width * 3 : (y + 2) * width * 3]
+        for row, luma in ((upper, out[y * width : (y + 1) * width]), (lower, out[(y + 1) * width : (y + 2) * width])):
+            for x in range(width):
+                r, g, b = np.int32(row[3 * x]), np.int32(row[3 * x + 1]), np.int32(row[3 * x + 2])
+                luma[x] = (16829 * r + 33039 * g + 6416 * b + (16 << 16) + (1 << 15)) >> 16
+        u, v = u_plane[y // 2 * half : (y // 2 + 1) * half], v_plane[y // 2 * half : (y // 2 + 1) * half]
+        for x in range(half):
+            i = 6 * x
+            r = np.int32(upper[i]) + upper[i + 3] + lower[i] + lower[i + 3]
+            g = np.int32(upper[i + 1]) + upper[i + 4] + lower[i + 1] + lower[i + 4]
+            b = np.int32(upper[i + 2]) + upper[i + 5] + lower[i + 2] + lower[i + 5]
+            u[x] = (-9714 * r - 19070 * g + 28784 * b + (128 << 18) + (1 << 17)) >> 18
+            v[x] = (28784 * r - 24103 * g - 4681 * b + (128 << 18) + (1 << 17)) >> 18
 
 
 @njit(**COMPILED)

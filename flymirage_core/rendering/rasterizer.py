@@ -1,14 +1,18 @@
-"""The rasterizer's protocol: what every back end takes and gives."""
+"""What every renderer takes and gives."""
 
-from collections.abc import Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.rendering.camera import Camera
+from flymirage_core.rendering.threads import in_order, usable_cores
 from flymirage_core.splats.cloud import GaussianCloud
+
+P = TypeVar("P")
 
 MIN_ALPHA_FOR_DEPTH = 0.5
 """Below this alpha the expected depth mixes too much of nothing: depth is written as 0, no return."""
@@ -23,10 +27,21 @@ class Rendering:
     alpha: NDArray[np.float32]  # (H, W) in [0, 1]
 
 
-class Rasterizer(Protocol):
+class Rasterizer(ABC):
     """Renders a cloud from many cameras; answers in the cameras' order, lazily, so that frames can be streamed."""
 
-    @property
-    def name(self) -> str: ...
+    name: str
 
-    def render(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator[Rendering]: ...
+    @abstractmethod
+    def render(self, cloud: GaussianCloud, cameras: Sequence[Camera]) -> Iterator[Rendering]:
+        """One picture for each camera."""
+
+    def develop(
+        self, cloud: GaussianCloud, cameras: Sequence[Camera], finish: Callable[[int, Rendering], P]
+    ) -> Generator[P, None, None]:
+        """What ``finish`` makes of each camera's number and picture, on several threads at once, in order.
+
+        Work on finished pictures goes here rather than into the loop that reads `render`, which has one thread.
+        """
+        pictures = enumerate(self.render(cloud, cameras))
+        return in_order(lambda numbered: finish(*numbered), pictures, usable_cores())

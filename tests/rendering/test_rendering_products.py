@@ -12,7 +12,7 @@ from flymirage_core.errors import InputError, ProductError
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.rendering.frames import FRAME_SCHEMA, BodyPath, Frames, camera_rig
-from flymirage_core.rendering.rasterizer import Rendering
+from flymirage_core.rendering.rasterizer import Rasterizer, Rendering
 from flymirage_core.rendering.recording import record_frames
 from flymirage_core.rendering.views import PosedViews, depth_to_millimetres
 from flymirage_core.settings import FrameSettings
@@ -131,7 +131,7 @@ def test_an_unknown_flight_is_named(frames):
 
 
 def test_a_rasterizer_that_stops_early_is_found_out(tmp_path):
-    class Tired:
+    class Tired(Rasterizer):
         name = "tired"
 
         def render(self, cloud, cameras):

@@ -16,11 +16,13 @@ from test_rendering_products import SETTINGS, hover, wall
 from flymirage_core.annotation.instances import oriented_boxes
 from flymirage_core.errors import InputError, ProductError
 from flymirage_core.progress import listening
-from flymirage_core.rendering import cpu, recording
+from flymirage_core.rendering import cpu
 from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.rendering.frames import Frames, camera_rig
-from flymirage_core.rendering.recording import record_frames, turns
-from flymirage_core.rendering.video import VideoWriter, i420
+from flymirage_core.rendering.rasterizer import Rasterizer
+from flymirage_core.rendering.recording import record_frames
+from flymirage_core.rendering.threads import LOOK_AHEAD, in_order
+from flymirage_core.rendering.video import VideoWriter, yuv420p
 
 RIG = camera_rig(SETTINGS)
 PICTURE_ON_THE_WALL = box(6, "picture", (3.0, 0.0, 0.0), (0.3, 1.0, 1.0))
@@ -30,24 +32,35 @@ def film(folder, *paths, objects=None) -> Frames:
     return record_frames(wall(), paths, RIG, CpuRasterizer(2), folder, objects)
 
 
-@given(st.lists(st.integers(1, 5), max_size=6), st.integers(1, 4))
-def test_flights_take_turns_and_each_gets_all_its_pictures(counts, lanes):
-    order = list(turns(dict(enumerate(counts)), lanes))
-    assert [order.count(i) for i in range(len(counts))] == counts
-    for i in range(len(order)):
-        begun_not_ended = {f for f in order[: i + 1] if f in order[i:]}
-        assert len(begun_not_ended) <= lanes
+def test_the_files_are_the_same_whatever_the_number_of_threads_and_whoever_develops(tmp_path):
+    class Streaming(Rasterizer):
+        """A back end that renders on one thread, as a card does: its pictures are developed on others."""
 
+        name = "streaming"
 
-def test_the_files_are_the_same_however_many_flights_are_filmed_in_turns(tmp_path, monkeypatch):
+        def render(self, cloud, cameras):
+            return CpuRasterizer(1).render(cloud, cameras)
+
     paths = [hover(0, 4), hover(1, 7, 0.3), hover(5, 2, -0.3)]
-    for lanes in (1, 3):
-        monkeypatch.setattr(recording, "lanes", lambda lanes=lanes: lanes)
-        film(tmp_path / str(lanes), *paths, objects=oriented_boxes([PICTURE_ON_THE_WALL]))
-    files = sorted(p.relative_to(tmp_path / "1") for p in (tmp_path / "1").rglob("*.*"))
+    objects = oriented_boxes([PICTURE_ON_THE_WALL])
+    rasterizers = {"one": CpuRasterizer(1), "three": CpuRasterizer(3), "streaming": Streaming()}
+    for name, rasterizer in rasterizers.items():
+        record_frames(wall(), paths, RIG, rasterizer, tmp_path / name, objects)
+    files = sorted(p.relative_to(tmp_path / "one") for p in (tmp_path / "one").rglob("*.*"))
     assert len(files) == 3 * 3 + 3
-    for file in files:
-        assert (tmp_path / "1" / file).read_bytes() == (tmp_path / "3" / file).read_bytes(), file
+    for name in rasterizers:
+        for file in files:
+            assert (tmp_path / "one" / file).read_bytes() == (tmp_path / name / file).read_bytes(), (name, file)
+
+
+@given(st.lists(st.integers(), max_size=20), st.integers(1, 4))
+def test_work_on_threads_comes_back_in_order_and_is_not_begun_far_ahead(items, threads):
+    begun = []
+    results = in_order(lambda item: begun.append(item) or -item, items, threads)
+    for done, item in enumerate(items):
+        assert next(results) == -item
+        assert len(begun) <= done + threads + LOOK_AHEAD
+    assert list(results) == []
 
 
 def test_frames_know_how_much_of_them_shows_the_target(tmp_path):
@@ -105,7 +118,7 @@ def test_an_encoder_that_fails_ends_the_filming_and_its_threads(tmp_path, monkey
     def full(self, frame):
         raise InputError("the disk is full")
 
-    monkeypatch.setattr(VideoWriter, "append", full)
+    monkeypatch.setattr(VideoWriter, "append_planes", full)
     with pytest.raises(InputError, match="the disk is full"):
         film(tmp_path, hover(0, 20), hover(1, 20))
     assert not [t for t in threading.enumerate() if t.name.startswith(("encoder", "rasterizer"))]
@@ -175,6 +188,6 @@ def test_a_person_is_told_that_the_renderer_compiles_and_only_then(monkeypatch):
     [((255, 255, 255), (235, 128, 128)), ((0, 0, 0), (16, 128, 128)), ((255, 0, 0), (81, 90, 240))],
 )
 def test_pure_colours_have_their_textbook_values_in_yuv(colour, expected):
-    planes = i420(np.full((4, 6, 3), colour, np.uint8))
+    planes = yuv420p(np.full((4, 6, 3), colour, np.uint8))
     assert planes.shape == (6, 6)
     assert [set(rows.ravel()) for rows in (planes[:4], planes[4], planes[5])] == [{value} for value in expected]

@@ -54,7 +54,7 @@ def test_the_same_frames_give_the_same_bytes(tmp_path):
 
 
 def test_rgb_video_of_an_odd_size_is_refused_in_one_sentence(tmp_path):
-    with pytest.raises(InputError, match=r"rgb.mp4: 63 x 48 pixels; .*even width"):
+    with pytest.raises(InputError, match=r"63 x 48 pixels; .*even width"):
         write_rgb(tmp_path / "rgb.mp4", smooth_pictures(1, width=63), 10)
 
 
