@@ -13,6 +13,7 @@ from flymirage_assets.assets.world_generation import world_generation_assets
 from flymirage_assets.executors import executor_of
 from flymirage_assets.nightly import nightly_schedules
 from flymirage_assets.sensors import automation_sensor, failure_sensor
+from flymirage_assets.sweep import sweep_sensor
 from flymirage_core.settings import Settings
 from resources.io_manager import ProductIOManager
 from resources.store import Store
@@ -48,7 +49,7 @@ def build_definitions(settings: Settings) -> dg.Definitions:
             dg.define_asset_job("dataset_and_exports", dg.AssetSelection.assets(*over_all)),
         ],
         schedules=nightly_schedules(settings),
-        sensors=[automation_sensor(settings, scene_selection), *failure_sensor(settings)],
+        sensors=[automation_sensor(settings, scene_selection), sweep_sensor(settings), *failure_sensor(settings)],
         resources={"io_manager": ProductIOManager(base=str(Store(settings.store).base))},
         executor=executor_of(settings),
     )

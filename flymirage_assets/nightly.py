@@ -1,4 +1,4 @@
-"""Schedules: new scenes every night, and in the morning another look at what is stale or unfinished."""
+"""Schedules: new scenes every night, and in the morning a report of what came of it."""
 
 from collections.abc import Iterator, Sequence
 from datetime import UTC, date, datetime
@@ -9,14 +9,13 @@ import dagster as dg
 from flymirage_assets.growing import night_scenes, why_stop
 from flymirage_assets.runs import scene_tags
 from flymirage_assets.stage import scenes
-from flymirage_assets.staleness import stage_specs, stale_products
 from flymirage_core.scene.taxonomy import taxonomy_named
 from flymirage_core.settings import Settings
 from resources.store import open_store
 
 
 def nightly_schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
-    """``nightly_growth`` and ``nightly_sweep``; off unless ``growth.nightly`` is set or the UI switches them on."""
+    """``nightly_growth`` and ``nightly_report``; off unless ``growth.nightly`` is set or the UI switches them on."""
     growth = settings.growth
     common: dict[str, Any] = {
         "execution_timezone": growth.timezone,
@@ -40,28 +39,6 @@ def nightly_schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
                 tags = {**scene_tags(origin), NIGHT_TAG: night.isoformat()}
                 yield dg.RunRequest(run_key=f"grow:{key}", partition_key=key, tags=tags)
 
-    @dg.schedule(job_name="grow_scene", cron_schedule=growth.sweep_cron, **common)
-    def nightly_sweep(context: dg.ScheduleEvaluationContext) -> Iterator[dg.RunRequest]:
-        """Scenes with stale or missing products, one run each, of these products alone; paid stages only if missing."""
-        from flymirage_assets.definitions import defs  # late: it is being built
-
-        store = open_store(settings.store)
-        specs = stage_specs(defs)
-        paid = {spec.name for spec in specs if spec.paid}
-        wanted: dict[str, list[str]] = {}
-        for stale in stale_products(store, specs, settings, context.instance.get_dynamic_partitions(str(scenes.name))):
-            if stale.asset not in paid or stale.reasons == ("not made yet",):
-                wanted.setdefault(stale.scene, []).append(stale.asset)
-        night = _night(context)
-        for scene, assets in wanted.items():
-            origin = store.origin(scene)
-            yield dg.RunRequest(
-                run_key=f"sweep:{night}:{scene}",
-                partition_key=scene,
-                asset_selection=[dg.AssetKey(name) for name in assets],
-                tags={} if origin is None else scene_tags(origin),
-            )
-
     @dg.schedule(job_name="report_night", cron_schedule=growth.sweep_cron, **common)
     def nightly_report(context: dg.ScheduleEvaluationContext) -> dg.RunRequest:
         """What came of the night: grown, failed, dropped, spent."""
@@ -70,7 +47,7 @@ def nightly_schedules(settings: Settings) -> list[dg.ScheduleDefinition]:
             run_key=f"report:{night}", run_config={"ops": {"growth_report": {"config": {"night": night}}}}
         )
 
-    return [nightly_growth, nightly_sweep, nightly_report]
+    return [nightly_growth, nightly_report]
 
 
 NIGHT_TAG = "flymirage/night"

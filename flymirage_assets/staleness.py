@@ -12,11 +12,8 @@ from flymirage_assets.hashing import hash_of, input_hash_of
 from flymirage_core.errors import InputError, ProductError
 from flymirage_core.settings import Settings
 from resources.records import ProductRecord
-from resources.store import Store
+from resources.store import READERS, Store
 from resources.tools import Tools, choose_tools
-
-READERS = 16
-"""Records are read by so many threads: an object store answers one after the other too slowly."""
 
 
 @dataclass(frozen=True)
@@ -80,14 +77,11 @@ def stale_products(
     """Stale products of ``scenes``, scene by scene, upstream first."""
     tools = choose_tools(settings)
     keys = list(scenes)
-    with ThreadPoolExecutor(READERS) as readers:
+    with ThreadPoolExecutor(1 if store.is_local else READERS) as readers:
         records = list(readers.map(lambda scene: {s.name: _current(store, s.name, scene) for s in specs}, keys))
-    costs = _usual_costs(records)
-    return [
-        stale
-        for scene, of_scene in zip(keys, records, strict=True)
-        for stale in _of_scene(store, specs, tools, scene, of_scene, costs)
-    ]
+        costs = _usual_costs(records)
+        found = readers.map(lambda scene, known: _of_scene(store, specs, tools, scene, known, costs), keys, records)
+        return [stale for of_scene in found for stale in of_scene]
 
 
 def _of_scene(
@@ -101,12 +95,17 @@ def _of_scene(
     found: list[StaleProduct] = []
     stale: set[str] = set()
     for spec in specs:
-        record = records[spec.name]
-        reasons = _reasons(store, spec, tools, scene, record, records)
+        record, digests = records[spec.name], _inputs(store, spec, scene, records)
+        names = {port: getattr(tools, port).name for port in spec.tools}
+        input_hash = input_hash_of(spec.code_version, digests, names)
+        if record is not None and record.input_hash == input_hash:
+            reasons = [] if store.is_whole(record) else ["files are missing or torn"]
+        else:
+            reasons = _reasons(spec, record, digests, names)
         following = sorted(stale & set(spec.upstream))
         if not reasons and not following:
             continue
-        if _was_made_before(store, spec, tools, scene, records) and not following:
+        if not following and store.remembered(spec.name, scene, input_hash) is not None:
             reasons, cost = [*reasons, "made so before: its files are still there"], (0.0, 0.0)
         else:
             cost = (record.seconds, record.usd) if record is not None else costs.get(spec.name, (0.0, 0.0))
@@ -116,28 +115,12 @@ def _of_scene(
     return found
 
 
-def _was_made_before(
-    store: Store, spec: StageSpec, tools: Tools, scene: str, records: Mapping[str, ProductRecord | None]
-) -> bool:
-    names = {port: getattr(tools, port).name for port in spec.tools}
-    input_hash = input_hash_of(spec.code_version, _inputs(store, spec, scene, records), names)
-    return store.remembered(spec.name, scene, input_hash) is not None
-
-
 def _reasons(
-    store: Store,
-    spec: StageSpec,
-    tools: Tools,
-    scene: str,
-    record: ProductRecord | None,
-    records: Mapping[str, ProductRecord | None],
+    spec: StageSpec, record: ProductRecord | None, digests: Mapping[str, str], names: Mapping[str, str]
 ) -> list[str]:
+    """Why a product that was made from something else, or never, is stale."""
     if record is None:
         return ["not made yet"]
-    digests = _inputs(store, spec, scene, records)
-    names = {port: getattr(tools, port).name for port in spec.tools}
-    if record.input_hash == input_hash_of(spec.code_version, digests, names):
-        return [] if store.is_whole(record) else ["files are missing or torn"]
     reasons = _code_and_settings(spec, record)
     reasons += [f"tool {p}: {record.tools.get(p)} -> {n}" for p, n in names.items() if record.tools.get(p) != n]
     reasons += [f"{name} has new bytes" for name, d in digests.items() if record.inputs.get(name) != d]

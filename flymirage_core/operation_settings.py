@@ -17,12 +17,12 @@ class GrowthSettings(Section):
     """New scenes night after night. The schedule is off until someone switches it on, here or in the UI."""
 
     nightly: bool = False
-    """Start the schedules ``nightly_growth`` and ``nightly_sweep`` without a click in the UI."""
+    """Start ``nightly_growth``, ``nightly_report`` and ``stale_sweep`` without a click in the UI."""
     scenes_per_night: Count = 5
     cron: str = "0 2 * * *"
     """When a night's scenes are requested."""
     sweep_cron: str = "30 5 * * *"
-    """When scenes with stale or missing products are requested again."""
+    """When the night is reported, and scenes with stale or missing products begin to be requested again."""
     timezone: str = "UTC"
     min_free_gb: NotNegative = 2.0
     """Growth stops before a scene if the store's disk has less than this."""

@@ -47,8 +47,7 @@ def collect_garbage(store: Store, older_than: float, removing: bool) -> Freed:
 
 def check_known(store: Store, scene: str) -> None:
     """Raises `SceneKeyError` for what can be no scene's key, `InputError` for a scene that nobody knows."""
-    check_scene_key(scene)
-    if scene not in store.scenes():
+    if not store.knows(scene):
         raise InputError(f"scene {scene!r} is not known: `flymirage status` lists the scenes")
 
 

@@ -14,13 +14,15 @@ Layout under the base (a local path or any fsspec URL)::
 A writer that is killed leaves at most an unreferenced folder. Reading goes by ``product.json`` alone.
 """
 
+import contextlib
 import hashlib
 import os
 import shutil
 import tempfile
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,6 +36,8 @@ from resources.faults import fault_point
 from resources.records import FileEntry, ProductRecord, SceneOrigin, parse_origin, parse_record
 
 STALE_STAGING_SECONDS = 24 * 3600
+READERS = 16
+"""Records are read by so many threads: an object store answers one after the other too slowly."""
 PREVIEW_NAME = "preview.jpg"
 """A picture for people: kept beside the product, outside of its content hash."""
 
@@ -89,6 +93,11 @@ class Store:
         path = self.base / "scenes" / f"{check_scene_key(scene)}.json"
         return parse_origin(path.read_text(), str(path)) if path.exists() else None
 
+    def knows(self, scene: str) -> bool:
+        """True if `scenes` lists it."""
+        check_scene_key(scene)
+        return (self.base / f"scenes/{scene}.json").exists() or (self.base / f"products/description/{scene}").exists()
+
     def scenes(self) -> list[str]:
         """Keys, sorted, of all scenes that were registered, or described (from a key typed in the UI)."""
         registered, described = self.base / "scenes", self.base / "products" / "description"
@@ -137,6 +146,18 @@ class Store:
         with os.scandir(str(folder)) as entries:
             return {e.name for e in entries if os.path.exists(f"{e.path}/product.json")}  # noqa: PTH110 - 10,000 times
 
+    def scenes_with_all(self, assets: Sequence[str]) -> list[str]:
+        """Keys, sorted, of scenes that have all of ``assets``; the last one is made from the others.
+
+        A listing for each asset; of an object store also a look whether the last product's pointer is there.
+        """
+        scenes = sorted(set.intersection(*(self.scenes_with(asset) for asset in assets)))
+        if self.is_local:
+            return scenes
+        with ThreadPoolExecutor(READERS) as readers:
+            pointers = readers.map(lambda scene: (self._product(assets[-1], scene) / "product.json").exists(), scenes)
+            return [scene for scene, there in zip(scenes, pointers, strict=True) if there]
+
     def current(self, asset: str, scene: str) -> ProductRecord | None:
         """The record of the product that is current, or None if there is none yet."""
         path = self._product(asset, scene) / "product.json"
@@ -167,7 +188,7 @@ class Store:
 
     def remembered(self, asset: str, scene: str, input_hash: str) -> ProductRecord | None:
         """The record of an earlier product with this input hash whose files are still there, or None."""
-        path = self._product(asset, scene) / "made" / f"{input_hash}.json"
+        path = self._product(asset, scene) / f"made/{input_hash}.json"
         try:
             record = parse_record(path.read_text(), str(path))
         except (FileNotFoundError, ProductError):
@@ -255,19 +276,27 @@ class Store:
 
     def _what_is_torn(self, record: ProductRecord) -> str:
         folder = self._product(record.asset, record.scene) / record.digest
+        sizes = self._sizes(folder, record.files)
         for name, entry in record.files.items():
-            try:
-                size = (folder / name).stat().st_size
-            except FileNotFoundError:
-                size = 0
-            if size != entry.size:
+            if (size := sizes.get(name, 0)) != entry.size:
                 return f"{folder / name} is missing or torn (expected {entry.size} bytes, found {size})"
         return ""
+
+    def _sizes(self, folder: UPath, names: Iterable[str]) -> dict[str, int]:
+        """Bytes of those files that are there: on an object store one listing tells of all of them."""
+        if not self.is_local:
+            found = folder.fs.find(folder.path, detail=True)
+            return {name.partition(f"/{folder.name}/")[2]: about["size"] for name, about in found.items()}
+        sizes = {}
+        for name in names:
+            with contextlib.suppress(FileNotFoundError):
+                sizes[name] = os.stat(f"{folder}/{name}").st_size  # noqa: PTH116 - a sweep asks for 100,000 files
+        return sizes
 
     def _product(self, asset: str, scene: str) -> UPath:
         if scene != ALL_SCENES:
             check_scene_key(scene)
-        return self.base / "products" / asset / scene
+        return self.base / f"products/{asset}/{scene}"
 
     def _staging_folder(self) -> Path:
         if not self.is_local:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, cast
 
@@ -42,7 +43,7 @@ _NEEDED: dict[str, Any] = {
 
 def finished_scenes(store: Store) -> list[str]:
     """Scenes that have every product which the data set needs."""
-    return [s for s in store.scenes() if all(store.current(asset, s) is not None for asset in _NEEDED)]
+    return store.scenes_with_all(tuple(_NEEDED))
 
 
 def check_exportable(store: Store) -> None:
@@ -79,7 +80,7 @@ class StoredScene:
     store: Store
     scene: str
 
-    @property
+    @cached_property
     def data_versions(self) -> dict[str, str]:
         return _versions(self.store, self.scene)
 

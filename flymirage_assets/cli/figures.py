@@ -26,7 +26,7 @@ def stats(
         console.print(_table(str(export), figures(statistics_of_export(export))))
         return
     store = project_store()
-    finished = [s for s in store.scenes() if all(store.current(asset, s) is not None for asset in TABLES)]
+    finished = store.scenes_with_all(tuple(TABLES))
     if not finished:
         raise InputError("there is nothing to count: no scene has all its products yet; run `flymirage grow`")
     shares = [share_of_tables(s, {asset: store.folder(asset, s) for asset in TABLES}) for s in finished]

@@ -1,0 +1,76 @@
+"""The morning's sweep: a page at a tick, every scene looked at once, and once more the next morning."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import dagster as dg
+import pytest
+
+from flymirage_assets import sweep
+from flymirage_core.settings import Settings
+from resources.records import SceneOrigin
+from resources.store import open_store
+
+NIGHT, MORNING, NEXT_MORNING = (datetime(2026, 11, *at, tzinfo=UTC) for at in ((21, 4), (21, 6), (22, 6)))
+KEYS = [f"s{i:03d}" for i in range(7)]
+
+
+class Sweeper:
+    """The sensor over a store with scenes of which nothing is made yet, ticked by hand."""
+
+    def __init__(self, folder: Path, instance: dg.DagsterInstance) -> None:
+        settings = Settings(store=str(folder / "store"))
+        for key in KEYS:
+            open_store(settings.store).register(SceneOrigin(scene=key, kind="generated"))
+        instance.add_dynamic_partitions("scene", KEYS)
+        self.instance, self.sensor, self.cursor = instance, sweep.sweep_sensor(settings), None
+
+    def tick(self, at: datetime) -> list[dg.RunRequest]:
+        context = dg.build_sensor_context(self.instance, cursor=self.cursor)
+        with dg.partition_loading_context(effective_dt=at):
+            result = self.sensor(context)
+        assert isinstance(result, dg.SensorResult)
+        self.cursor = result.cursor
+        return list(result.run_requests or [])
+
+
+@pytest.fixture
+def sweeper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Sweeper:
+    monkeypatch.setattr(sweep, "PAGE_SECONDS", 0.0)
+    monkeypatch.setattr(sweep, "AT_ONCE", 3)
+    return Sweeper(tmp_path, dg.DagsterInstance.ephemeral())
+
+
+def test_a_sweep_that_was_just_switched_on_waits_for_its_hour(sweeper: Sweeper) -> None:
+    assert sweeper.tick(NIGHT) == [] == sweeper.tick(NIGHT)
+    assert sweeper.tick(MORNING) != []
+
+
+def test_every_scene_is_looked_at_once_a_morning_a_page_at_a_tick(sweeper: Sweeper) -> None:
+    sweeper.tick(NIGHT)
+    pages = [[r.partition_key for r in sweeper.tick(MORNING)] for _ in range(5)]
+    assert pages == [KEYS[:3], KEYS[3:6], KEYS[6:], [], []]
+    again = [r.run_key for _ in range(4) for r in sweeper.tick(NEXT_MORNING)]
+    assert len(again) == len(set(again)) == len(KEYS) and all("2026-11-22" in str(key) for key in again)
+
+
+def test_a_tick_that_died_is_asked_for_again_with_the_same_run_keys(sweeper: Sweeper) -> None:
+    sweeper.tick(NIGHT)
+    cursor = sweeper.cursor
+    first = [r.run_key for r in sweeper.tick(MORNING)]
+    sweeper.cursor = cursor
+    assert [r.run_key for r in sweeper.tick(MORNING)] == first
+
+
+def test_a_scene_that_is_being_made_is_left_alone(sweeper: Sweeper) -> None:
+    @dg.op
+    def nothing() -> None: ...
+
+    @dg.job
+    def job() -> None:
+        nothing()
+
+    started = dg.DagsterRunStatus.STARTED
+    sweeper.instance.create_run_for_job(job, status=started, tags={"dagster/partition": KEYS[1]})
+    sweeper.tick(NIGHT)
+    assert [r.partition_key for r in sweeper.tick(MORNING)] == [KEYS[0], KEYS[2]]
