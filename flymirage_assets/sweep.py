@@ -28,7 +28,7 @@ class SweepCursor(BaseModel):
 
 
 def sweep_sensor(settings: Settings) -> dg.SensorDefinition:
-    """``stale_sweep``: begins at ``growth.sweep_cron``; off unless ``growth.nightly`` is set or the UI switches it on."""
+    """``stale_sweep``: begins at ``growth.sweep_cron``; off unless ``growth.nightly`` or the UI switches it on."""
     growth = settings.growth
     on = dg.DefaultSensorStatus.RUNNING if growth.nightly else dg.DefaultSensorStatus.STOPPED
     mornings = dg.TimeWindowPartitionsDefinition(
