@@ -330,7 +330,7 @@ def _bin(records: Float32, order: UInt32, width: int, height: int) -> tuple[Int6
     """Which Gaussians meet which tile, from front to back: tile t's are ``lists[starts[t]:starts[t + 1]]``."""
     columns, rows = (width + LANES - 1) // LANES, (height + TILE_HEIGHT - 1) // TILE_HEIGHT
     starts = np.zeros(columns * rows + 1, np.int64)
-    rectangles = np.empty((len(order), 4), np.int32)  # first and last column, first and last row
+    rectangles = np.empty((len(order), 4), np.uint16)  # first and last column, first and last row
     for i in range(len(order)):
         p = records[i]
         left, right = (p[CENTRE_X] - p[HALF_WIDTH]) / F(LANES), (p[CENTRE_X] + p[HALF_WIDTH]) / F(LANES)
