@@ -18,9 +18,9 @@ from typing import Any, cast
 
 import dagster as dg
 import numpy as np
-import pyarrow.parquet as pq
 from numpy.typing import NDArray
 
+from flymirage_assets.catalogue import KINDS, columns_of
 from flymirage_assets.checks import check_results, check_specs
 from flymirage_assets.conditions import condition_of
 from flymirage_assets.failures import one_clear_sentence
@@ -196,7 +196,6 @@ def product_asset(
     draw: Draw,
     sections: Sequence[str] = (),
     tools: Sequence[str] = (),
-    kinds: Sequence[str] = ("python",),
 ) -> Callable[[Compute], dg.AssetsDefinition]:
     """Make a scene-partitioned asset of ``function(stage, **upstream products) -> product``.
 
@@ -217,7 +216,7 @@ def product_asset(
             partitions_def=scenes,
             group_name=group,
             code_version=stage.code_version,
-            kinds={"python", *kinds},
+            kinds=KINDS[stage.name],
             owners=[f"team:{group}"],
             pool=pool_of(settings, tools),
             retry_policy=retry_policy(settings),
@@ -230,7 +229,7 @@ def product_asset(
                 "reads_settings": stage.section_values,
                 "uses_tools": list(tools),
                 "costs_money": is_paid(settings, tools),
-                **code_reference(function),
+                **about(stage.name, function),
             },
         )
         def materialise(context: dg.AssetExecutionContext, **inputs: Any):  # type: ignore[no-untyped-def]
@@ -280,13 +279,14 @@ def retry_policy(settings: Settings) -> dg.RetryPolicy | None:
     )
 
 
-def code_reference(function: Compute) -> dict[str, Any]:
-    """Where the stage's own function stands: the UI opens it in an editor."""
+def about(asset: str, function: Callable[..., Any]) -> dict[str, Any]:
+    """What a record of ``asset`` holds, and where its function stands: the UI opens it in an editor."""
     code = inspect.unwrap(function).__code__
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", dg.BetaWarning)
         place = dg.LocalFileCodeReference(file_path=code.co_filename, line_number=code.co_firstlineno)
-        return {"dagster/code_references": dg.CodeReferencesMetadataValue(code_references=[place])}
+        references = dg.CodeReferencesMetadataValue(code_references=[place])
+    return {"dagster/code_references": references, "dagster/column_schema": columns_of(asset)}
 
 
 def materialize_result(commit: Commit, store: Store) -> Any:
@@ -308,21 +308,9 @@ def materialize_result(commit: Commit, store: Store) -> Any:
     if commit.preview is not None:
         picture = base64.b64encode(commit.preview).decode()
         metadata["picture"] = dg.MetadataValue.md(f"![picture](data:image/jpeg;base64,{picture})")
-    schema = column_schema(commit, store)
-    if schema is not None:
-        metadata["dagster/column_schema"] = schema
     return dg.MaterializeResult(
         value=commit, metadata=metadata, data_version=dg.DataVersion(record.digest), check_results=results
     )
-
-
-def column_schema(commit: Commit, store: Store) -> dg.TableSchema | None:
-    """Columns of the product's largest table, if it has one."""
-    tables = {name: entry.size for name, entry in commit.record.files.items() if name.endswith(".parquet")}
-    if not tables or commit.staged is None:
-        return None
-    schema = pq.read_schema(commit.staged.folder / max(tables, key=lambda name: tables[name]))
-    return dg.TableSchema(columns=[dg.TableColumn(name=field.name, type=str(field.type)) for field in schema])
 
 
 @cache

@@ -9,9 +9,10 @@ from typing import Any, cast
 import dagster as dg
 
 from flymirage_assets import previews
+from flymirage_assets.catalogue import KINDS
 from flymirage_assets.failures import one_clear_sentence
 from flymirage_assets.report import SCENE_PRODUCTS
-from flymirage_assets.stage import ProductAsset, Stage, materialize_result
+from flymirage_assets.stage import ProductAsset, Stage, about, materialize_result
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.dataset.changelog import DataVersion
 from flymirage_core.dataset.export_folder import export
@@ -122,9 +123,11 @@ def export_asset(form: str, dataset: dg.AssetsDefinition) -> dg.AssetsDefinition
         name=form,
         deps=[dataset],
         group_name="dataset",
+        owners=["team:dataset"],
         required_resource_keys={"io_manager"},
-        kinds={"parquet"},
+        kinds=KINDS[form],
         description=DESCRIPTIONS[form],
+        metadata=about(form, export),
     )
     def write(context: dg.AssetExecutionContext, config: ExportConfig) -> dg.MaterializeResult[None]:
         store = cast(ProductIOManager, context.resources.io_manager).store
@@ -148,9 +151,11 @@ def dataset_assets(settings: Settings) -> list[dg.AssetsDefinition]:
     @dg.asset(
         deps=[every_scene],
         group_name="dataset",
+        owners=["team:dataset"],
         code_version=stage.code_version,
         required_resource_keys={"io_manager"},
-        kinds={"parquet"},
+        kinds=KINDS["dataset"],
+        metadata=about("dataset", build_manifest),
     )
     def dataset(context: dg.AssetExecutionContext) -> Any:
         """Episodes of all finished scenes, with splits, statistics and the data set's card."""

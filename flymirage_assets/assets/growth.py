@@ -6,7 +6,9 @@ from typing import Any, cast
 
 import dagster as dg
 
+from flymirage_assets.catalogue import KINDS
 from flymirage_assets.growing import growth_report as report_of
+from flymirage_assets.stage import about
 from resources.io_manager import ProductIOManager
 
 
@@ -17,7 +19,13 @@ class NightConfig(dg.Config):
 
 
 def growth_assets() -> list[dg.AssetsDefinition]:
-    @dg.asset(group_name="growth", kinds={"python"}, owners=["team:growth"], required_resource_keys={"io_manager"})
+    @dg.asset(
+        group_name="growth",
+        owners=["team:growth"],
+        required_resource_keys={"io_manager"},
+        kinds=KINDS["growth_report"],
+        metadata=about("growth_report", report_of),
+    )
     def growth_report(context: dg.AssetExecutionContext, config: NightConfig) -> dg.MaterializeResult[None]:
         """One night of growth: scenes asked for, grown, failed; flights kept and dropped; dollars; seconds."""
         night = date.fromisoformat(config.night) if config.night else datetime.now(UTC).date()

@@ -44,7 +44,6 @@ def world_generation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         sections=["generation", "cleaning"],
         tools=["world_model"],
         draw=previews.world,
-        kinds=["python", "gaussians"],
     )
     def world(stage: Stage, description: SceneDescription, image: ScenePicture) -> World:
         """The 3D Gaussian world in the metric z-up frame, with its centre c, from the description and its picture."""

@@ -18,6 +18,17 @@ def test_the_assets_are_the_products_of_the_paper() -> None:
     assert {*SCENE_PRODUCTS, "dataset", "lerobot", "growth_report"} <= keys
 
 
+def test_every_asset_says_what_it_is_who_owns_it_where_its_code_is_and_what_a_record_holds() -> None:
+    graph = build_definitions(Settings()).resolve_asset_graph()
+    for key in graph.get_all_asset_keys():
+        asset = graph.get(key)
+        assert asset.kinds and "python" not in asset.kinds, key
+        assert asset.owners and asset.group_name and asset.description, key
+        assert asset.metadata["dagster/column_schema"].columns, key
+        (place,) = asset.metadata["dagster/code_references"].code_references
+        assert isinstance(place, dg.LocalFileCodeReference) and Path(place.file_path).exists(), key
+
+
 def test_a_setting_changes_the_code_versions_of_the_stages_that_read_it_alone() -> None:
     def versions(settings: Settings) -> dict[str, str | None]:
         graph = build_definitions(settings).resolve_asset_graph()
