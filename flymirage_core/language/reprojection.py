@@ -10,10 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.language.evidence import Sighting
+from flymirage_core.rendering.camera import Camera
 from flymirage_core.rendering.views import DEPTH_UNIT
 
 GRID = 160
 """Pixels across of the shrunk pictures."""
+POINT_STEP = 2
+"""Of the first shrunk picture every second pixel in every second row is followed: some thousands are a fair sample."""
 DEPTH_TOLERANCE = (0.03, 0.04)
 """Metres, and share of the depth, by which a point may be off: half a shrunk pixel on a slanted floor."""
 LEAST_COMMON = 0.2
@@ -30,64 +33,66 @@ class Change:
 
 def change(first: Sighting, second: Sighting) -> Change | None:
     """How the first frame's points look in the second; None if hardly any of them is in it."""
-    shrunk, other = _shrunk(first), _shrunk(second)
-    points = shrunk.points()  # (N, 3) world
-    pixels, expected = second.camera.project(points)  # (N, 2), (N,)
-    scale = other.depth.shape[1] / second.camera.intrinsics.width
-    columns, rows = np.floor(np.nan_to_num(pixels, nan=-1e6) * scale).astype(int).T
-    height, width = other.depth.shape
+    before, here, expected = _followed(first, second.camera)  # (N,) grey levels, (N, 2) pixels, (N,) metres
+    other = _shrunk(second)
+    height, width = other.luma.shape
+    columns, rows = np.floor(np.nan_to_num(here, nan=-1e6) * (width / second.camera.intrinsics.width)).astype(int).T
     inside = (expected > 0) & (columns >= 0) & (columns < width) & (rows >= 0) & (rows < height)
-    if inside.sum() < LEAST_COMMON * len(points) or not inside.any():
+    if inside.sum() < LEAST_COMMON * len(expected) or not inside.any():
         return None
     rows, columns, expected = rows[inside], columns[inside], expected[inside]
     tolerance = DEPTH_TOLERANCE[0] + DEPTH_TOLERANCE[1] * expected
     same = (other.nearest[rows, columns] <= expected + tolerance) & (
         other.farthest[rows, columns] >= expected - tolerance
     )
-    before, after = shrunk.luma[shrunk.depth > 0][inside], other.luma[rows, columns]
-    steps = np.abs(before - after)[same]
+    steps = np.abs(before[inside] - other.luma[rows, columns])[same]
     return Change(float(np.median(steps)) if steps.size else 255.0, float(1 - same.mean()))
 
 
 @dataclass(frozen=True, eq=False)
 class _Shrunk:
-    sighting: Sighting
+    """The picture that is looked into."""
+
     luma: NDArray[np.float32]  # (h, w)
-    depth: NDArray[np.float32]  # (h, w) metres, of the middle pixel
     nearest: NDArray[np.float32]  # (h, w) metres, of the 3 x 3 neighbours
     farthest: NDArray[np.float32]
 
-    def points(self) -> NDArray[np.float64]:
-        """World points (N, 3) of the pixels with a return, row by row."""
-        rows, columns = np.nonzero(self.depth)
-        camera = self.sighting.camera
-        k, scale = camera.intrinsics, camera.intrinsics.width / self.depth.shape[1]
-        z = self.depth[rows, columns].astype(float)
-        x = (_middle(columns, scale) + 0.5 - k.cx) / k.fx * z
-        y = (_middle(rows, scale) + 0.5 - k.cy) / k.fy * z
-        pose = camera.T_world_camera
-        return np.asarray(np.stack([x, y, z], axis=1) @ pose[:3, :3].T + pose[:3, 3])
+
+def _followed(first: Sighting, second: Camera) -> tuple[NDArray[np.float32], NDArray[np.float64], NDArray[np.float64]]:
+    """Points of the first picture: grey level (N,), and pixel (N, 2) and z-depth (N,) in the second camera."""
+    depth, rows, columns = _thinned(first.depth)
+    luma = _small(first.luma)[::POINT_STEP, ::POINT_STEP]
+    depth, rows, columns = depth[::POINT_STEP, ::POINT_STEP], rows[::POINT_STEP], columns[::POINT_STEP]
+    k, returns = first.camera.intrinsics, depth > 0
+    x, y = depth * ((columns + 0.5 - k.cx) / k.fx), depth * ((rows + 0.5 - k.cy) / k.fy)[:, None]
+    local = np.stack([x[returns], y[returns], depth[returns]], axis=1)  # (N, 3)
+    pose = first.camera.T_world_camera
+    pixels, expected = second.project(local @ pose[:3, :3].T + pose[:3, 3])
+    return luma[returns], pixels, expected
 
 
 def _shrunk(sighting: Sighting) -> _Shrunk:
-    height, width = sighting.depth.shape
-    size = min(GRID, width), max(1, round(height * min(GRID, width) / width))
-    scale = width / size[0]
-    rows, columns = (
-        np.minimum(_middle(np.arange(n), scale), m - 1) for n, m in zip(size[::-1], (height, width), strict=True)
-    )
-    depth = sighting.depth[np.ix_(rows, columns)].astype(np.float32) * np.float32(DEPTH_UNIT)
+    depth, _, _ = _thinned(sighting.depth)
     window = np.ones((3, 3), np.uint8)
     far = np.where(depth > 0, depth, np.float32(np.inf))
-    return _Shrunk(
-        sighting,
-        np.asarray(cv2.resize(sighting.luma, size, interpolation=cv2.INTER_AREA), np.float32),
-        depth,
-        np.asarray(cv2.erode(far, window), np.float32),
-        np.asarray(cv2.dilate(depth, window), np.float32),
+    nearest, farthest = cv2.erode(far, window), cv2.dilate(depth, window)
+    return _Shrunk(_small(sighting.luma), np.asarray(nearest, np.float32), np.asarray(farthest, np.float32))
+
+
+def _size(height: int, width: int) -> tuple[int, int]:
+    """Columns and rows of a shrunk picture."""
+    return min(GRID, width), max(1, round(height * min(GRID, width) / width))
+
+
+def _small(luma: NDArray[np.float32]) -> NDArray[np.float32]:
+    return np.asarray(cv2.resize(luma, _size(*luma.shape), interpolation=cv2.INTER_AREA), np.float32)
+
+
+def _thinned(depth: NDArray[np.uint16]) -> tuple[NDArray[np.float32], NDArray[np.intp], NDArray[np.intp]]:
+    """Depth (h, w) in metres of the full picture's pixels in the middle of the shrunk ones; their rows and columns."""
+    size, (height, width) = _size(*depth.shape), depth.shape
+    rows, columns = (
+        np.minimum(np.floor((np.arange(n) + 0.5) * (width / size[0])).astype(np.intp), m - 1)
+        for n, m in zip(size[::-1], (height, width), strict=True)
     )
-
-
-def _middle(index: NDArray[np.intp], scale: float) -> NDArray[np.intp]:
-    """The full picture's pixel in the middle of a shrunk one."""
-    return np.asarray(np.floor((index + 0.5) * scale), np.intp)
+    return depth[np.ix_(rows, columns)].astype(np.float32) * np.float32(DEPTH_UNIT), rows, columns
