@@ -9,9 +9,9 @@ from pathlib import Path
 import dagster as dg
 
 from flymirage_assets.pools import POOL_LIMITS
+from resources.processes import is_alive, this_process
 
-PID_TAG = ".dagster/flymirage_pid"  # the prefix keeps them out of the UI
-BOOT_TAG = ".dagster/flymirage_boot"
+PROCESS_TAG = ".dagster/flymirage_process"  # the prefix keeps them out of the UI
 HOST_TAG = ".dagster/flymirage_host"
 
 
@@ -27,12 +27,12 @@ def prepare_home() -> Path:
 
 def process_tags() -> dict[str, str]:
     """Tags that tell later which process ran a run, so that a killed one is recognised."""
-    return {PID_TAG: str(os.getpid()), BOOT_TAG: _boot_id(), HOST_TAG: socket.gethostname()}
+    return {PROCESS_TAG: this_process(), HOST_TAG: socket.gethostname()}
 
 
 def tag_with_process(instance: dg.DagsterInstance, run: dg.DagsterRun) -> None:
     """Let a run that the daemon launched be recognised too when its process is gone."""
-    if PID_TAG not in run.tags and not run.is_finished:
+    if PROCESS_TAG not in run.tags and not run.is_finished:
         instance.add_run_tags(run.run_id, process_tags())
 
 
@@ -61,25 +61,6 @@ def close_dead_runs(instance: dg.DagsterInstance) -> int:
 
 
 def _is_dead(tags: Mapping[str, str]) -> bool:
-    if PID_TAG not in tags or tags.get(HOST_TAG, socket.gethostname()) != socket.gethostname():
+    if PROCESS_TAG not in tags or tags.get(HOST_TAG) != socket.gethostname():
         return False  # nothing is known of it from here
-    return not _is_alive(tags[PID_TAG], tags[BOOT_TAG])
-
-
-def _is_alive(pid: str, boot: str) -> bool:
-    return boot == _boot_id() and Path(f"/proc/{pid}").exists() if Path("/proc").exists() else _answers(int(pid))
-
-
-def _answers(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except PermissionError:
-        return True
-    return True
-
-
-def _boot_id() -> str:
-    path = Path("/proc/sys/kernel/random/boot_id")
-    return path.read_text().strip() if path.exists() else ""
+    return not is_alive(tags[PROCESS_TAG])

@@ -11,7 +11,7 @@ from upath import UPath
 from flymirage_core.errors import InputError, ProductError
 from flymirage_core.scene.keys import check_scene_key
 from resources.records import parse_record
-from resources.store import ALL_SCENES, Store
+from resources.store import ALL_SCENES, Store, is_used
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def collect_garbage(store: Store, older_than: float, removing: bool) -> Freed:
         for product in _folders(store.base / "products" / asset):
             doomed += _old_versions(store, asset, product, deadline)
     if store.is_local:
-        doomed += [f for f in _folders(store.base / "staging") if _age_of(f) < deadline]
+        doomed += [f for f in _folders(store.base / "staging") if _age_of(f) < deadline and not is_used(f)]
     else:
         cache = UPath(tempfile.gettempdir()) / "flymirage-cache"
         doomed += [f for f in _folders(cache) if _age_of(f) < deadline]

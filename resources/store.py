@@ -18,6 +18,7 @@ import contextlib
 import hashlib
 import os
 import shutil
+import socket
 import tempfile
 import time
 import uuid
@@ -33,6 +34,7 @@ from flymirage_core.errors import InputError, ProductError
 from flymirage_core.product import Product
 from flymirage_core.scene.keys import check_scene_key
 from resources.faults import fault_point
+from resources.processes import is_alive, this_process
 from resources.records import FileEntry, ProductRecord, SceneOrigin, parse_origin, parse_record
 
 STALE_STAGING_SECONDS = 24 * 3600
@@ -304,9 +306,9 @@ class Store:
         root = Path(str(self.base)) / "staging"
         root.mkdir(parents=True, exist_ok=True)
         for old in root.iterdir():
-            if time.time() - old.stat().st_mtime > STALE_STAGING_SECONDS:
+            if time.time() - old.stat().st_mtime > STALE_STAGING_SECONDS and not is_used(old):
                 shutil.rmtree(old, ignore_errors=True)
-        folder = root / uuid.uuid4().hex
+        folder = root / f"{uuid.uuid4().hex}.{socket.gethostname()}.{this_process()}"
         folder.mkdir()
         return folder
 
@@ -375,6 +377,12 @@ def _as_text(record: ProductRecord) -> str:
 def sha256_of(path: Path) -> str:
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def is_used(staging: Path) -> bool:
+    """True if a process of this machine writes there still, however old the clock makes it."""
+    host, _, process = staging.name.partition(".")[2].rpartition(".")
+    return host == socket.gethostname() and is_alive(process)
 
 
 def _move_folder(source: Path, target: Path) -> None:

@@ -8,7 +8,7 @@ import dagster as dg
 import pytest
 
 from flymirage_assets.definitions import build_definitions
-from flymirage_assets.home import BOOT_TAG, PID_TAG, close_dead_runs, process_tags
+from flymirage_assets.home import PROCESS_TAG, close_dead_runs, process_tags
 from flymirage_assets.report import SCENE_PRODUCTS
 from flymirage_core.settings import PlannerSettings, Settings
 
@@ -46,7 +46,7 @@ def test_the_workspace_loads_as_dagster_dev_loads_it() -> None:
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
 
 
-@pytest.mark.parametrize(("tags", "closed"), [(process_tags(), 0), ({PID_TAG: "1", BOOT_TAG: "another boot"}, 1)])
+@pytest.mark.parametrize(("tags", "closed"), [(process_tags(), 0), ({**process_tags(), PROCESS_TAG: "1-7-gone"}, 1)])
 def test_runs_of_killed_processes_are_closed_and_others_left(tags: dict[str, str], closed: int) -> None:
     with dg.instance_for_test() as instance:
 

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -174,6 +175,19 @@ def test_a_store_that_cannot_be_made_says_which_setting_to_change(tmp_path: Path
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="set FLYMIRAGE_STORE"):
         open_store(str(tmp_path / "file" / "store"))
+
+
+def test_a_clock_that_jumps_takes_no_folder_from_a_writer_that_is_at_work(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = open_store(str(tmp_path))
+    left = tmp_path / "staging" / "0123.elsewhere.7-7-gone"
+    left.mkdir(parents=True)
+    now = time.time()
+    with store.scratch() as at_work:
+        monkeypatch.setattr(time, "time", lambda: now + 10 * 86_400)
+        commit(store, "ten days later")
+        assert at_work.exists() and not left.exists()
 
 
 @pytest.mark.parametrize("instant", ["staged:1", "files committed:1", "pointer committed:1"])
