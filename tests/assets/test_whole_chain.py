@@ -59,7 +59,9 @@ def test_the_run_and_its_pictures_are_in_dagster(grown: Project) -> None:
             metadata = event.asset_materialization.metadata
             assert "data:image/jpeg;base64," in str(metadata["picture"].value)
             numbers = {name for name, entry in metadata.items() if isinstance(entry.value, int | float)}
-            assert {"seconds", "bytes", "usd"} < numbers - {"reused", "commit_seconds"}, asset  # what the UI plots per partition
+            assert {"seconds", "bytes", "usd"} < numbers - {"reused", "commit_seconds"}, (
+                asset
+            )  # what the UI plots per partition
             record = grown.store.current(asset, SCENE)
             tags = event.asset_materialization.tags or {}
             assert record is not None and tags["dagster/data_version"] == record.digest
