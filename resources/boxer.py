@@ -5,6 +5,7 @@ files in the layout that its ScanNet loader reads, and answers with a table of d
 than d_th1 from their camera are dropped and the rest fused by us (paper, section III-B).
 """
 
+import contextlib
 import csv
 import math
 import os
@@ -205,15 +206,10 @@ def plain_noun(name: str) -> str:
 
 def _stop(process: "subprocess.Popen[bytes]") -> None:
     """End a program with all that it started."""
-    for sign in (signal.SIGTERM, signal.SIGKILL):
-        try:
+    for sign in (signal.SIGTERM, signal.SIGKILL):  # the second one also for what outlived the program itself
+        with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
             os.killpg(process.pid, sign)
             process.wait(GRACE)
-        except ProcessLookupError:
-            return
-        except subprocess.TimeoutExpired:
-            continue
-        return
 
 
 def _why(status: int, log: str, home: Path) -> str:

@@ -8,6 +8,7 @@ what goes wrong.
 import argparse
 import csv
 import json
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -39,6 +40,8 @@ def main() -> None:
     if fault == "cuda":
         sys.exit("RuntimeError: CUDA error: no kernel image is available for execution on the device")
     if fault == "hang":
+        child = subprocess.Popen(["sh", "-c", "trap '' TERM; sleep 60 & wait; sleep 60"])
+        Path(__file__).with_name("child.pid").write_text(str(child.pid))
         time.sleep(60)
     assert "/scannet/" in options.input, "this path would select another loader"
     frames = Path(options.input) / "frames"
