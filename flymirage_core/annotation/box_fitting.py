@@ -202,7 +202,7 @@ def _with_unseen_half(plan: Footprint, to_camera: Float32) -> Footprint:
 
 def _reaching_wall(box: FittedBox, structure: RoomStructure, max_gap: float, tall: bool) -> FittedBox:
     """The box grown to walls right behind it, its unseen back."""
-    for wall in structure.walls:
+    for wall in structure.walls_at(box.centre):
         for axis in (0, 1):
             angle = box.yaw + axis * np.pi / 2
             if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) < PARALLEL:
@@ -255,7 +255,7 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
     gap = box.bottom - support
     on_wall = any(
         abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - min(box.size[:2]) / 2 < NEAR_WALL
-        for w in structure.walls
+        for w in structure.walls_at(box.centre)
     )
     if not on_wall and gap > MAX_WALL_DROP and box.bottom - floor > MIN_HANGING and structure.ceiling_map is not None:
         ceiling = float(structure.ceiling_map.at(np.array([box.centre[:2]]))[0])

@@ -19,6 +19,10 @@ RELATIVE_TOLERANCE: Final = 0.025
 """The same as a share of depth, where that is more."""
 MIN_HITS: Final = 2
 """Frames that must hit a point."""
+BLOCK: Final = 0.75
+"""Metres: edge of the blocks in which points are passed over that a frame does not show."""
+BLOCK_SLACK: Final = 0.01
+"""Metres, so that no rounding hides a block."""
 MIN_SUPPORT_POINTS: Final = 5
 """Points of an object that a view must hit to have seen it."""
 
@@ -26,8 +30,12 @@ MIN_SUPPORT_POINTS: Final = 5
 def solid(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
     """(N,) True for points (N, 3) that at least `MIN_HITS` frames hit, and no fewer than see through them."""
     votes = np.zeros((len(points), 2), np.int32)  # hits, seen through
-    for frame in frames:
-        _vote(points, frame.depth, *_projection(frame), votes)
+    if len(points):
+        blocks = np.floor(points / BLOCK).astype(np.int64)
+        groups = _Groups.of(points, np.unique(blocks, axis=0, return_inverse=True)[1].reshape(-1))
+        for frame in frames:
+            _vote(groups.points, groups.starts, groups.shown_in(frame), frame.depth, *_projection(frame), votes)
+        votes[groups.order] = votes.copy()
     return np.asarray((votes[:, 0] >= min(MIN_HITS, len(frames))) & (votes[:, 1] <= votes[:, 0]))
 
 
@@ -47,22 +55,55 @@ def detections(
 
     The paper's pruning of single detections (section III-B): what lies beyond d_th1 of the camera does not count.
     """
-    owner = np.full(len(points), -1, np.int64)
-    for k, box in enumerate(boxes):
-        owner[box.members] = k
-    owned = np.flatnonzero(owner >= 0)
-    centres = np.array([box.centre for box in boxes]).reshape(-1, 3)
+    if not boxes:
+        return []
+    members = np.concatenate([box.members for box in boxes])
+    owner = np.repeat(np.arange(len(boxes)), [len(box.members) for box in boxes])
+    groups = _Groups.of(points[members], owner)
+    centres = np.array([box.centre for box in boxes])  # (B, 3)
     views, nearest = np.zeros(len(boxes), int), np.full(len(boxes), np.inf)
     found = np.zeros((len(boxes), len(frames)), np.int64)
     for f, frame in enumerate(frames):
-        hits = np.zeros(len(boxes), np.int64)
-        _count_hits(points[owned], owner[owned], frame.depth, *_projection(frame), hits)
         distance = np.linalg.norm(centres - frame.camera.position, axis=1)
-        seen = (hits >= MIN_SUPPORT_POINTS) & (distance <= max_distance)
+        shown = groups.shown_in(frame)
+        shown = shown[distance[shown] <= max_distance]
+        hits = np.zeros(len(boxes), np.int64)
+        _count_hits(groups.points, groups.starts, shown, frame.depth, *_projection(frame), hits)
+        seen = hits >= MIN_SUPPORT_POINTS
         views += seen
         found[:, f] = np.where(seen, hits, 0)
         nearest = np.where(seen, np.minimum(nearest, distance), nearest)
     return [Detections(int(v), float(d), h) for v, d, h in zip(views, nearest, found, strict=True)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Groups:
+    """Points in G groups with a ball round each, so that a frame may pass over those outside of its view."""
+
+    points: Float32  # (N, 3) group by group
+    order: NDArray[np.intp]  # (N,) number of each point before
+    starts: NDArray[np.intp]  # (G + 1,)
+    centres: NDArray[np.float64]  # (G, 3)
+    radii: NDArray[np.float64]  # (G,)
+
+    @staticmethod
+    def of(points: Float32, labels: NDArray[np.intp]) -> "_Groups":
+        """Grouped by ``labels`` (N,), 0 to G - 1, each of which has a point."""
+        order = np.argsort(labels, kind="stable")
+        ordered = points[order]
+        starts = np.concatenate([[0], np.cumsum(np.bincount(labels))]).astype(np.intp)
+        low, high = (ufunc.reduceat(ordered, starts[:-1]).astype(float) for ufunc in (np.minimum, np.maximum))
+        return _Groups(ordered, order, starts, (low + high) / 2, np.linalg.norm(high - low, axis=1) / 2)
+
+    def shown_in(self, frame: Frame) -> NDArray[np.intp]:
+        """Groups (S,) that may reach into a frame's view."""
+        k = frame.camera.intrinsics
+        sides = np.array(
+            [[k.fx, 0, k.cx], [-k.fx, 0, k.width - k.cx], [0, k.fy, k.cy], [0, -k.fy, k.height - k.cy], [0, 0, 1]]
+        )  # (5, 3) inward normals in the camera's frame
+        sides /= np.linalg.norm(sides, axis=1, keepdims=True)
+        inside = (self.centres - frame.camera.position) @ (frame.camera.T_world_camera[:3, :3] @ sides.T)  # (G, 5)
+        return np.flatnonzero((inside > -self.radii[:, None] - BLOCK_SLACK).all(axis=1))
 
 
 def _projection(frame: Frame) -> tuple[Float32, Float32]:
@@ -88,25 +129,36 @@ def _surface_gap(point: Float32, depth: Float32, matrix: Float32, lens: Float32)
 
 
 @numba.njit(cache=True, nogil=True)
-def _vote(points: Float32, depth: Float32, matrix: Float32, lens: Float32, votes: NDArray[np.int32]) -> None:
-    for n in range(len(points)):
-        gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
-        if abs(gap) <= tolerance:
-            votes[n, 0] += 1
-        elif gap > tolerance:
-            votes[n, 1] += 1
+def _vote(
+    points: Float32,
+    starts: NDArray[np.intp],
+    groups: NDArray[np.intp],
+    depth: Float32,
+    matrix: Float32,
+    lens: Float32,
+    votes: NDArray[np.int32],
+) -> None:
+    for g in groups:
+        for n in range(starts[g], starts[g + 1]):
+            gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
+            if abs(gap) <= tolerance:
+                votes[n, 0] += 1
+            elif gap > tolerance:
+                votes[n, 1] += 1
 
 
 @numba.njit(cache=True, nogil=True)
 def _count_hits(
     points: Float32,
-    owner: NDArray[np.int64],
+    starts: NDArray[np.intp],
+    groups: NDArray[np.intp],
     depth: Float32,
     matrix: Float32,
     lens: Float32,
     hits: NDArray[np.int64],
 ) -> None:
-    for n in range(len(points)):
-        gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
-        if abs(gap) <= tolerance:
-            hits[owner[n]] += 1
+    for g in groups:
+        for n in range(starts[g], starts[g + 1]):
+            gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
+            if abs(gap) <= tolerance:
+                hits[g] += 1

@@ -29,6 +29,7 @@ from flymirage_core.annotation.labels import Support
 from flymirage_core.annotation.merging import merge_parts
 from flymirage_core.annotation.naming import Name, is_believed, named
 from flymirage_core.annotation.normals import surface_normals
+from flymirage_core.annotation.open_air import find_open_air, sees_sky
 from flymirage_core.annotation.parts import PartSet, Surface
 from flymirage_core.annotation.picture_joins import join_pieces
 from flymirage_core.annotation.picture_votes import look_at, votes
@@ -51,6 +52,8 @@ STRUCTURE_VOXEL: Final = 0.05
 STRUCTURE_FRAMES: Final = 48
 STRUCTURE_RANGE: Final = 12.0
 """Metres; the building is found from about so many views, without the pass's own distance limit."""
+FARTHEST: Final = 12.0
+"""Metres from its camera beyond which a pass without a limit of its own makes no boxes: pixels are too coarse there."""
 NORMAL_RADIUS: Final = 3.0
 """Voxels within which points shape a normal."""
 NORMAL_NEIGHBOURS: Final = 16
@@ -107,7 +110,7 @@ class EmbeddedAnnotator:
         ``pictures``: what a 2D detector found in each frame, if there is one.
         """
         structure = self.structure(frames)
-        cloud = fuse_points(frames, self.settings.voxel, max_distance + HALF_AN_OBJECT)
+        cloud = fuse_points(frames, self.settings.voxel, min(max_distance, FARTHEST) + HALF_AN_OBJECT)
         cloud = _solid_cloud(cloud, structure, frames)
         boxes = propose_boxes(cloud, structure, self.settings.voxel)
         if pictures:
@@ -128,6 +131,8 @@ class EmbeddedAnnotator:
         cloud = fuse_points(frames[::step], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         square = fuse_points([square_only(frame) for frame in frames[::step]], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
+        if sees_sky(frames[::step]):
+            return find_open_air(cloud.points, normals, square.points)
         return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL)
 
 
@@ -246,7 +251,7 @@ def support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStruct
     carried = any(other is not box and abs(other.top - box.bottom) < RESTING and _over(box, other) for other in boxes)
     near_wall = any(
         abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - max(box.size[:2]) / 2 < AT_WALL
-        for w in structure.walls
+        for w in structure.walls_at(box.centre)
     )
     return Support.WALL if near_wall and not carried else Support.SURFACE
 

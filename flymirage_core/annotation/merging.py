@@ -51,6 +51,9 @@ COVER_SHARE: Final = 0.6
 MIN_COVER_AREA: Final = 0.25
 """Square metres; smaller overhanging parts are lids, shades and things on things."""
 FOOT_CLEARANCE: Final = 0.25
+CANOPY_CLEARANCE: Final = 1.0
+MAX_POLE_SHARE: Final = 0.35
+"""Of a canopy's plan, that what carries it has at most."""
 SHADE_CLEARANCE: Final = 0.3
 MAX_POLE_GAP: Final = 1.1
 """Metres between a foot on the floor and a shade whose pole was lost."""
@@ -108,7 +111,7 @@ def _join_touching(parts: PartSet) -> bool:
         if (
             _same_thing(a, b, step, contact, stands and step > IDENTICAL_COLOUR)
             or _piece_inside(a, b, stands, upper)
-            or (not stands and _stacked(lower, upper))
+            or (not stands and (_stacked(lower, upper) or _held_up(lower, upper)))
         ):
             parts.join(i, j)
             changed = True
@@ -153,6 +156,15 @@ def _stacked(lower: Part, upper: Part) -> bool:
         return True
     overhung = upper.lower[2] < lower.upper[2] + JOINT_GAP and min(a.area, b.area) > MIN_COVER_AREA
     return bool(overhung and b.share_inside(lower.points, NEAR) > NEARLY_ALL)
+
+
+def _held_up(pole: Part, canopy: Part) -> bool:
+    """A parasol's cloth or a tree's crown round the upper end of what carries it."""
+    if pole.clearance > FOOT_CLEARANCE or canopy.clearance < CANOPY_CLEARANCE or pole.upper[2] < canopy.lower[2] - NEAR:
+        return False
+    a, b = pole.footprint, canopy.footprint
+    centred = np.linalg.norm(a.centre - b.centre) < CENTRED * b.size.max() + NEAR
+    return bool(centred and a.area < MAX_POLE_SHARE * b.area and b.share_inside(pole.points, NEAR) > NEARLY_ALL)
 
 
 def _join_lost_poles(parts: PartSet) -> None:

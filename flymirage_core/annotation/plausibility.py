@@ -78,9 +78,10 @@ def _holds(body: FittedBox, box: FittedBox, points: Float32) -> bool:
 
 
 def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool:
-    """High up at a wall, or flat up there; what hangs freely is not."""
+    """High up at a wall, or flat up there, or with nothing above to hang from; what hangs freely is not."""
     at_wall = structure.wall_gap(box.centre, min(box.size[:2])) < TRIM_GAP
-    return clearance > HIGH and not box.hanging and (at_wall or box.size[2] < TRIM_HEIGHT)
+    afloat = structure.ceiling_map is None
+    return clearance > HIGH and not box.hanging and (at_wall or afloat or box.size[2] < TRIM_HEIGHT)
 
 
 def _is_ledge(box: FittedBox, structure: RoomStructure) -> bool:

@@ -67,6 +67,8 @@ MIN_OUTER_HEIGHT: Final = 1.2
 """Metres of height that the outermost plane shows at least."""
 WALL_END: Final = 0.1
 """Metres that a wall's slab goes on beyond the points seen of it."""
+REACH_ON: Final = 0.5
+"""Metres beyond its seen end that a wall is taken to go on behind things that stand there."""
 MAX_TURN: Final = 0.06
 """Radians; walls that would turn the yaw by more are not straight."""
 SHARPNESS_BIN: Final = 0.04
@@ -84,6 +86,7 @@ class Wall:
     back: (
         float  # offset of the plane as seen straight on; `offset` is that of most of its points, which come out nearer
     )
+    thickness: float = WALL_THICKNESS  # metres behind the plane that still are the wall
 
     @property
     def direction(self) -> Float64:
@@ -97,7 +100,7 @@ class Wall:
         """(N,) whether points (N, 3) belong to the wall's slab."""
         along = points[:, :2] @ self.direction
         distance = self.distance(points)
-        near = (distance < WALL_CLEARANCE) & (distance > -WALL_THICKNESS)
+        near = (distance < WALL_CLEARANCE) & (distance > -self.thickness)
         return np.asarray(near & (along > self.start - WALL_END) & (along < self.end + WALL_END))
 
 
@@ -124,13 +127,14 @@ class RoomStructure:
     walls: tuple[Wall, ...]
     floor_map: HeightMap
     ceiling_map: HeightMap | None
+    floor_clearance: float = FLOOR_CLEARANCE  # metres above the floor that still are the floor
 
     def contains(self, points: Float32) -> Bool:
         """(N,) whether points (N, 3) belong to the floor, the ceiling or a wall.
 
         Only slabs belong to it, never all that is behind a wall: a flat has more than one room.
         """
-        inside = points[:, 2] <= self.floor_map.at(points) + FLOOR_CLEARANCE
+        inside = points[:, 2] <= self.floor_map.at(points) + self.floor_clearance
         if self.ceiling_map is not None:
             inside |= points[:, 2] >= self.ceiling_map.at(points) - CEILING_CLEARANCE
         for wall in self.walls:
@@ -150,9 +154,14 @@ class RoomStructure:
             skin |= near & (normals[:, :2] @ wall.normal > ALONG_WALL)
         return skin
 
+    def walls_at(self, centre: tuple[float, float, float]) -> list[Wall]:
+        """The walls that go on as far along as a thing at ``centre``; the others end somewhere else."""
+        along = [float(np.dot(w.direction, centre[:2])) for w in self.walls]
+        return [w for w, a in zip(self.walls, along, strict=True) if w.start - REACH_ON < a < w.end + REACH_ON]
+
     def wall_gap(self, centre: tuple[float, float, float], depth: float) -> float:
         """Metres between the nearest wall and a thing of ``depth`` metres at ``centre``; inf without walls."""
-        gaps = [float(np.dot(w.normal, centre[:2])) - w.back - depth / 2 for w in self.walls]
+        gaps = [float(np.dot(w.normal, centre[:2])) - w.back - depth / 2 for w in self.walls_at(centre)]
         return min((abs(gap) for gap in gaps), default=float("inf"))
 
 
@@ -167,7 +176,7 @@ def find_structure(points: Float32, normals: Float32, square: Float32, voxel: fl
     """
     if len(points) == 0:
         return RoomStructure(0.0, None, 0.0, (), HeightMap(np.zeros(2), np.zeros((1, 1))), None)
-    floor = _floor(points, normals)
+    floor = floor_height(points, normals)
     ceiling = _ceiling(points, normals, floor)
     upright = np.abs(normals[:, 2]) < VERTICAL
     upright &= (normals != 0).any(axis=1)
@@ -175,15 +184,14 @@ def find_structure(points: Float32, normals: Float32, square: Float32, voxel: fl
     ceiling_reach = ceiling - CEILING_REACH if ceiling is not None else floor + DEFAULT_ROOM_HEIGHT - CEILING_REACH
     top = min(ceiling_reach, floor + ABOVE_FURNITURE)
     walls = [w for k in range(4) for w in _walls_facing(points, normals, upright, yaw + k * np.pi / 2, top, voxel)]
-    yaw, walls = _aligned(points, normals, upright, yaw, walls)
-    walls = [_with_back(wall, square) for wall in walls]
-    level = (normals[:, 2] > HORIZONTAL) & (np.abs(points[:, 2] - floor) < FLOOR_RELIEF)
-    floor_map = _height_map(points, level, floor)
+    yaw, walls = aligned(points, normals, upright, yaw, walls)
+    walls = [with_back(wall, square) for wall in walls]
     ceiling_map = None
     if ceiling is not None:
         ceiling_map = _height_map(
             points, (normals[:, 2] < -HORIZONTAL) & (points[:, 2] > ceiling - CEILING_RELIEF), ceiling
         )
+    floor_map = floor_relief(points, normals, floor)
     return RoomStructure(floor, ceiling, float(yaw % (np.pi / 2)), tuple(walls), floor_map, ceiling_map)
 
 
@@ -212,7 +220,8 @@ def _sharpness(xy: Float64, facing: Float64, yaw: float) -> float:
     return total
 
 
-def _floor(points: Float32, normals: Float32) -> float:
+def floor_height(points: Float32, normals: Float32) -> float:
+    """The lowest height at which much of the surface looks up."""
     level = points[normals[:, 2] > HORIZONTAL, 2]
     if len(level) < MIN_LEVEL_POINTS:
         return float(points[:, 2].min())
@@ -269,7 +278,7 @@ def _walls_facing(
     return walls
 
 
-def _aligned(
+def aligned(
     points: Float32, normals: Float32, upright: Bool, yaw: float, walls: list[Wall]
 ) -> tuple[float, list[Wall]]:
     """The yaw refined by straight lines through the walls' own points, and the walls turned accordingly."""
@@ -298,11 +307,11 @@ def _aligned(
             & (normals[:, :2] @ normal > ALONG_WALL)
         )
         offset = float(np.median(points[facing, :2] @ normal)) if facing.any() else wall.offset
-        turned.append(Wall(normal, offset, wall.start, wall.end, offset))
+        turned.append(replace(wall, normal=normal, offset=offset, back=offset))
     return yaw + turn, turned
 
 
-def _with_back(wall: Wall, square: Float32) -> Wall:
+def with_back(wall: Wall, square: Float32) -> Wall:
     """The wall with its plane measured by points (N, 3) that cameras looked at squarely, if there are some."""
     distance = wall.distance(square)
     along = square[:, :2] @ wall.direction
@@ -310,6 +319,12 @@ def _with_back(wall: Wall, square: Float32) -> Wall:
     if near.sum() < MIN_SQUARE_POINTS:
         return wall
     return replace(wall, back=wall.offset + float(np.percentile(distance[near], BACK_PERCENTILE)))
+
+
+def floor_relief(points: Float32, normals: Float32, floor: float) -> HeightMap:
+    """The heights of a floor near ``floor``, of points (N, 3) with ``normals`` (N, 3)."""
+    level = (normals[:, 2] > HORIZONTAL) & (np.abs(points[:, 2] - floor) < FLOOR_RELIEF)
+    return _height_map(points, level, floor)
 
 
 def _height_map(points: Float32, level: Bool, default: float) -> HeightMap:

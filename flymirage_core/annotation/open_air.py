@@ -1,0 +1,145 @@
+"""What is the place and not an object under an open sky: the ground, house fronts, fences and parapets.
+
+There is no ceiling for a wall to reach; what closes an open-air place are upright faces longer than any object.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from flymirage_core.annotation.fused_points import Frame
+from flymirage_core.annotation.room_structure import (
+    ALONG_WALL,
+    MAP_CELL,
+    MIN_LEVEL_POINTS,
+    PEAK_WINDOW,
+    VERTICAL,
+    WALL_BIN,
+    RoomStructure,
+    Wall,
+    aligned,
+    floor_height,
+    floor_relief,
+    room_yaw,
+    with_back,
+)
+
+Float32 = NDArray[np.float32]
+Float64 = NDArray[np.float64]
+Bool = NDArray[np.bool_]
+
+UPWARDS: Final = 0.5
+"""Sine of the elevation from which a ray looks up: at the sky, or at a ceiling."""
+SKY_DISTANCE: Final = 25.0
+"""Metres along such a ray; no ceiling is so far away."""
+MIN_SKY: Final = 0.1
+"""Share of sky among all that is seen upwards, from which a place is open."""
+RAY_STEP: Final = 8
+"""Every eighth pixel, both ways, is asked."""
+MIN_FACE_POINTS: Final = 600
+"""Points in three bins of offset (5 cm apart: 1.5 square metres) from which a face is looked at."""
+FACE_DEPTH: Final = 0.07
+"""Metres to both sides of a face within which its points lie: boards and courses of brick."""
+FOOT: Final = 0.15
+"""Metres above the ground where a face's columns begin ..."""
+COLUMN_HEIGHT: Final = 2.4
+"""... and end."""
+BREAST: Final = 0.9
+"""Metres above the ground that a column reaches: parapets do, counters do not."""
+MIN_FILLED: Final = 3
+"""Cells of a column in which the face is seen."""
+MAX_GAP: Final = 1.65
+"""Metres of a face that something before it may hide."""
+MIN_LENGTH: Final = 4.5
+"""Metres; shorter faces may be those of objects."""
+MIN_SEEN: Final = 0.5
+"""Share of a face's columns that are seen; rows of stalls have gaps, and posts above their counters."""
+CLOSE_BEHIND: Final = 1.2
+"""Metres behind a house front in which window panes, reveals and what shows through them lie."""
+FAR_BEHIND: Final = 8.0
+MAX_BEHIND: Final = 0.3
+"""Points between `CLOSE_BEHIND` and `FAR_BEHIND` behind a face, as a share of its own, up to which nothing is there."""
+GROUND_CLEARANCE: Final = 0.09
+"""Metres; large places have large splats, whose ground is uneven."""
+
+
+def sees_sky(frames: Sequence[Frame]) -> bool:
+    """Whether much of what is seen upwards is farther than any ceiling; what returns no depth says nothing."""
+    sky = cover = 0
+    for frame in frames:
+        k = frame.camera.intrinsics
+        u = (np.arange(0, k.width, RAY_STEP) + 0.5 - k.cx) / k.fx
+        v = (np.arange(0, k.height, RAY_STEP) + 0.5 - k.cy) / k.fy
+        rays = np.stack(np.broadcast_arrays(u[None], v[:, None], 1.0), axis=-1)  # (h, w, 3)
+        length = np.linalg.norm(rays, axis=-1)
+        depth = frame.depth[::RAY_STEP, ::RAY_STEP]
+        up = (rays @ frame.camera.T_world_camera[2, :3] > UPWARDS * length) & (depth > 0)
+        far = up & (depth * length > SKY_DISTANCE)
+        sky += int(far.sum())
+        cover += int(up.sum())
+    return sky > MIN_SKY * cover
+
+
+def find_open_air(points: Float32, normals: Float32, square: Float32) -> RoomStructure:
+    """Ground, yaw and what closes the place; arguments as of `find_structure`."""
+    floor = floor_height(points, normals)
+    upright = (np.abs(normals[:, 2]) < VERTICAL) & (normals != 0).any(axis=1)
+    yaw = room_yaw(points[upright], normals[upright])
+    walls = [w for k in range(4) for w in _faces(points, normals, upright, yaw + k * np.pi / 2, floor)]
+    yaw, walls = aligned(points, normals, upright, yaw, walls)
+    walls = [with_back(wall, square) for wall in walls]
+    relief = floor_relief(points, normals, floor)
+    return RoomStructure(floor, None, float(yaw % (np.pi / 2)), tuple(walls), relief, None, GROUND_CLEARANCE)
+
+
+def _faces(points: Float32, normals: Float32, upright: Bool, azimuth: float, floor: float) -> list[Wall]:
+    """Long upright faces whose normal has this azimuth."""
+    normal = np.array([np.cos(azimuth), np.sin(azimuth)])
+    direction = np.array([-normal[1], normal[0]])
+    facing = upright & (normals[:, :2] @ normal > ALONG_WALL)
+    if facing.sum() < 2 * MIN_LEVEL_POINTS:
+        return []
+    offsets, along = points[:, :2] @ normal, points[:, :2] @ direction  # (N,)
+    mine = offsets[facing]
+    counts, edges = np.histogram(mine, np.arange(mine.min() - 2 * WALL_BIN, mine.max() + 3 * WALL_BIN, WALL_BIN))
+    counts = np.convolve(counts, [1, 1, 1], "same")
+    peaks = (counts >= ndimage.maximum_filter1d(counts, PEAK_WINDOW)) & (counts > MIN_FACE_POINTS)
+    walls = []
+    for j in np.flatnonzero(peaks):
+        offset = float((edges[j] + edges[j + 1]) / 2)
+        on = facing & (np.abs(offsets - offset) < FACE_DEPTH)
+        offset = float(np.median(offsets[on]))
+        for start, end in _stretches(along[on], points[on, 2] - floor):
+            wall = Wall(normal, offset, start, end, offset)
+            walls.append(replace(wall, thickness=CLOSE_BEHIND) if _hides_all(wall, points, floor) else wall)
+    return walls
+
+
+def _stretches(along: Float32, heights: Float32) -> list[tuple[float, float]]:
+    """Where a face goes on for longer than objects do: (start, end) along it; heights are above the ground."""
+    origin = float(along.min()) - MAX_GAP
+    columns = int((along.max() - origin + MAX_GAP) / MAP_CELL) + 1
+    filled = np.zeros((columns, int(COLUMN_HEIGHT / MAP_CELL)), bool)
+    row = np.floor((heights - FOOT) / MAP_CELL).astype(int)
+    inside = (row >= 0) & (row < filled.shape[1])
+    filled[((along[inside] - origin) / MAP_CELL).astype(int), row[inside]] = True
+    tall = (filled.sum(axis=1) >= MIN_FILLED) & filled[:, int((BREAST - FOOT) / MAP_CELL) :].any(axis=1)
+    numbers, count = ndimage.label(ndimage.binary_closing(tall, np.ones(int(MAX_GAP / MAP_CELL))))
+    found = []
+    for k in range(1, count + 1):
+        run = np.flatnonzero(numbers == k)
+        if len(run) * MAP_CELL > MIN_LENGTH and tall[run].mean() > MIN_SEEN:
+            found.append((origin + float(run[0]) * MAP_CELL, origin + float(run[-1] + 1) * MAP_CELL))
+    return found
+
+
+def _hides_all(wall: Wall, points: Float32, floor: float) -> bool:
+    """Whether next to nothing is seen behind a face: then it is a house's, and what shows close behind is the house."""
+    along, distance, heights = points[:, :2] @ wall.direction, wall.distance(points), points[:, 2] - floor
+    before = (along > wall.start) & (along < wall.end) & (heights > FOOT) & (heights < COLUMN_HEIGHT)
+    behind = before & (distance < -CLOSE_BEHIND) & (distance > -FAR_BEHIND)
+    return bool(behind.sum() < MAX_BEHIND * (before & (np.abs(distance) < FACE_DEPTH)).sum())
