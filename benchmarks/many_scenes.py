@@ -8,6 +8,7 @@ GraphQL queries behind the UI's asset pages are timed.
 """
 
 import argparse
+import contextlib
 import json
 import os
 import socket
@@ -23,6 +24,7 @@ from typing import Any
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tests"))
 
+import dagster as dg  # noqa: E402
 import httpx  # noqa: E402
 import stand_in  # noqa: E402, F401
 
@@ -46,8 +48,8 @@ GRAPHQL = {
 }
 
 
-def synthesise(folder: Path, count: int) -> list[str]:
-    """``count`` finished scenes: copies of one that is really made."""
+def synthesise(folder: Path, keys: list[str]) -> None:
+    """Finished scenes ``keys``: copies of the first, which is really made."""
     from flymirage_assets import runs
     from flymirage_assets.report import SCENE_PRODUCTS
     from resources.records import SceneOrigin
@@ -55,7 +57,6 @@ def synthesise(folder: Path, count: int) -> list[str]:
 
     store = open_store(str(folder / "store"))
     store.register(SceneOrigin(scene="s00000", kind="generated", category="home", subcategory="kitchen"))
-    keys = [f"s{i:05d}" for i in range(count)]
     with runs.dagster_instance() as instance:
         outcome = runs.run_scene(instance, "s00000")
         assert not outcome.error, outcome.error
@@ -73,7 +74,6 @@ def synthesise(folder: Path, count: int) -> list[str]:
             (product / "product.json").write_text(record.replace("s00000", key))
             (product / digest).symlink_to(base / "products" / asset / "s00000" / digest)
     _copy_events(folder / "dagster" / "history" / "runs" / "index.db", keys)
-    return keys
 
 
 def _copy_events(database: Path, keys: list[str]) -> None:
@@ -133,8 +133,8 @@ def cpu_of(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
-def ask_the_ui(folder: Path) -> None:
-    """Time GraphQL queries against a real webserver on loopback, each three times."""
+def ask_the_ui(folder: Path, when: str) -> None:
+    """Time GraphQL queries against a webserver that is started on loopback, each three times."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -171,38 +171,69 @@ def ask_the_ui(folder: Path) -> None:
                 answer = httpx.post(url, json={"query": query}, timeout=120).json()
                 seconds.append((time.perf_counter() - started, cpu_of(server.pid) - before))
                 assert "errors" not in answer, answer["errors"][0]["message"]
-            print(f"UI: {what}: {', '.join(f'{s:.2f} s ({c:.2f} CPU s)' for s, c in seconds)}", flush=True)
+            print(f"UI, {when}: {what}: {', '.join(f'{s:.2f} s ({c:.2f} CPU s)' for s, c in seconds)}", flush=True)
     finally:
         server.terminate()
         server.wait(30)
 
 
+def sweep(keys: list[str]) -> None:
+    """A whole morning of the sensor ``stale_sweep``: how long its ticks take, and that each scene is looked at once."""
+    from flymirage_assets.sweep import SweepCursor, sweep_sensor
+    from flymirage_core.settings import Settings
+
+    sensor, cursor, ticks = sweep_sensor(Settings()), SweepCursor(morning="yesterday").model_dump_json(), []
+    asked: list[str | None] = []
+    with dg.DagsterInstance.get() as instance:
+        while not SweepCursor.model_validate_json(cursor).done:
+            started = time.perf_counter(), time.process_time()
+            result = sensor(dg.build_sensor_context(instance, cursor=cursor))
+            assert isinstance(result, dg.SensorResult) and result.cursor is not None
+            ticks.append((time.perf_counter() - started[0], time.process_time() - started[1]))
+            asked += [request.partition_key for request in result.run_requests or []]
+            cursor = result.cursor
+    wall, cpu = [t[0] for t in ticks], sum(t[1] for t in ticks)
+    print(f"stale_sweep: {len(ticks)} ticks of at most {max(wall):.1f} s, {cpu:.1f} CPU s in all; ", end="")
+    print(f"{len(asked)} runs asked for, each of another scene: {len(set(asked)) == len(asked)}", flush=True)
+    assert set(asked) <= set(keys)
+
+
+def measure(folder: Path, keys: list[str]) -> None:
+    for _ in range(2):
+        timed("flymirage status", lambda: command(folder, "status"))
+    timed("flymirage status SCENE", lambda: command(folder, "status", keys[42]))
+    from flymirage_assets import definitions, growing, runs
+    from flymirage_assets.assets.dataset import finished_scenes
+    from flymirage_assets.staleness import stage_specs, stale_products
+    from flymirage_core.settings import Settings
+    from resources.store import open_store
+
+    settings = Settings()
+    store = open_store(settings.store)
+    timed("which scenes are finished", lambda: finished_scenes(store))
+    with runs.dagster_instance() as instance:
+        timed("keys of 5 more scenes", lambda: growing.next_scenes(store, instance, 5))
+        timed("a night's scenes", lambda: growing.night_scenes(store, growing.date(2026, 1, 1), 5))
+    specs = stage_specs(definitions.defs)
+    timed("what is stale in all scenes", lambda: stale_products(store, specs, settings, keys))
+    sweep(keys)
+    ask_the_ui(folder, "with a log that no server has seen yet")
+    ask_the_ui(folder, "after a restart")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--scenes", type=int, default=10_000)
-    count = parser.parse_args().scenes
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        os.environ |= {"DAGSTER_HOME": f"{name}/dagster", "FLYMIRAGE_STORE": f"{name}/store"}
+    parser.add_argument("--folder", type=Path, help="of an earlier time, or to be kept for a later one")
+    arguments = parser.parse_args()
+    with contextlib.ExitStack() as stack:
+        folder = arguments.folder or Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        os.environ |= {"DAGSTER_HOME": f"{folder}/dagster", "FLYMIRAGE_STORE": f"{folder}/store"}
         os.environ["PYTHONPATH"] = str(ROOT)
-        keys: list[str] = []
-        timed(f"{count} synthetic scenes", lambda: keys.extend(synthesise(folder, count)))
-        for _ in range(2):
-            timed("flymirage status", lambda: command(folder, "status"))
-        timed("flymirage status SCENE", lambda: command(folder, "status", keys[42]))
-        from flymirage_assets import definitions, growing, runs
-        from flymirage_assets.staleness import stage_specs, stale_products
-        from flymirage_core.settings import Settings
-        from resources.store import open_store
-
-        settings = Settings()
-        store = open_store(settings.store)
-        with runs.dagster_instance() as instance:
-            timed("keys of 5 more scenes", lambda: growing.next_scenes(store, instance, 5))
-            timed("a night's scenes", lambda: growing.night_scenes(store, growing.date(2026, 1, 1), 5))
-        specs = stage_specs(definitions.defs)
-        timed("what is stale in all scenes", lambda: stale_products(store, specs, settings, keys))
-        ask_the_ui(folder)
+        keys = [f"s{i:05d}" for i in range(arguments.scenes)]
+        if not (folder / "store").exists():
+            timed(f"{len(keys)} synthetic scenes", lambda: synthesise(folder, keys))
+        measure(folder, keys)
 
 
 if __name__ == "__main__":

@@ -153,6 +153,11 @@ def grow_on_cluster(folder: Path, keys: list[str], seconds: float, limit: float)
                     killed = True
                     print(f"killed a worker after {done} scenes, {time.perf_counter() - started:.0f} s", flush=True)
             took = time.perf_counter() - started
+            while instance.get_run_records(dg.RunsFilter(statuses=runs.UNFINISHED), limit=1):
+                if time.perf_counter() - started > limit:
+                    break
+                time.sleep(3)
+            closed = time.perf_counter() - started - took
             states = Counter(run.status.value for run in instance.get_runs())
         whole = [
             all((r := store.current(asset, key)) is not None and store.is_whole(r) for asset in SCENE_PRODUCTS)
@@ -160,7 +165,7 @@ def grow_on_cluster(folder: Path, keys: list[str], seconds: float, limit: float)
         ]
         pace = f"{took:.0f} s, {3600 * done / took:.0f} an hour"
         print(f"cluster: {sum(whole)} of {len(keys)} scenes whole in S3 after {pace}")
-        print(f"runs: {dict(states)}", flush=True)
+        print(f"runs: {dict(states)}, {closed:.0f} s later", flush=True)
     finally:
         for process in [*workers, *reversed(servers)]:
             if process.poll() is None:
@@ -188,12 +193,14 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=20)
     parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument("--limit", type=float, default=3000.0, help="seconds that the cluster has")
+    parser.add_argument("--alone", action=argparse.BooleanOptionalAction, default=True, help="also in one process")
     parser.add_argument("--keep", type=Path, help="keep logs here")
     arguments = parser.parse_args()
     folder = arguments.keep or Path(tempfile.mkdtemp())
     folder.mkdir(exist_ok=True)
     grow_on_cluster(folder, [f"c{i:03d}" for i in range(arguments.scenes)], arguments.seconds, arguments.limit)
-    grow_in_one_process(folder / "alone", max(2, arguments.scenes // 5), arguments.seconds)
+    if arguments.alone:
+        grow_in_one_process(folder / "alone", max(2, arguments.scenes // 5), arguments.seconds)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""The morning's look at every scene: what is stale or unfinished is requested again, page after page."""
+"""The morning's look at every scene: what is stale or unfinished is requested again, page after page.
+
+At every tick, all day, runs whose process was killed are closed: a scene of theirs is then free to be made again.
+"""
 
 import time
 from bisect import bisect_right
@@ -7,6 +10,7 @@ from collections.abc import Sequence
 import dagster as dg
 from pydantic import BaseModel
 
+from flymirage_assets.home import close_dead_runs
 from flymirage_assets.runs import UNFINISHED, scene_tags
 from flymirage_assets.stage import scenes
 from flymirage_assets.staleness import StageSpec, stage_specs, stale_products
@@ -38,6 +42,7 @@ def sweep_sensor(settings: Settings) -> dg.SensorDefinition:
     @dg.sensor(name="stale_sweep", job_name="grow_scene", minimum_interval_seconds=30, default_status=on)
     def stale_sweep(context: dg.SensorEvaluationContext) -> dg.SensorResult:
         """Scenes with stale or missing products, one run each, of these products alone; paid stages only if missing."""
+        close_dead_runs(context.instance)
         last = mornings.get_last_partition_window()
         morning = last.end.isoformat() if last is not None else ""
         if context.cursor is None:  # just switched on

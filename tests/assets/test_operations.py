@@ -1,15 +1,13 @@
 """The machine room: growth that is the same however often it is asked for, failures, automation, housekeeping."""
 
 import errno
-import os
-import subprocess
-import sys
 from collections import Counter
 from datetime import UTC, date, datetime
 from pathlib import Path
 
 import dagster as dg
 import pytest
+from projects import Project
 
 from flymirage_assets.conditions import CASCADE
 from flymirage_assets.failures import one_clear_sentence
@@ -30,12 +28,8 @@ def store(tmp_path: Path) -> Store:
 
 
 def flymirage(folder: Path, *arguments: str, **environment: str) -> str:
-    """A command over stand-in stages (tests/stand_in.py); what it printed."""
-    env = {k: v for k, v in os.environ.items() if k != "DAGSTER_HOME" and not k.startswith("FLYMIRAGE_")}
-    tests = Path(__file__).parents[1]
-    env |= {"PYTHONPATH": f"{tests}:{tests.parent}", "COLUMNS": "180", **environment}
-    command = [sys.executable, "-m", "stand_in", *arguments]
-    outcome = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, timeout=280, check=False)
+    """A command over stand-in stages; what it printed."""
+    outcome = Project(folder, {}, "stand_in").flymirage(*arguments, **environment)
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
     return outcome.stdout
 

@@ -7,7 +7,9 @@ import dagster as dg
 import pytest
 
 from flymirage_assets import sweep
+from flymirage_assets.home import PROCESS_TAG, process_tags
 from flymirage_core.settings import Settings
+from resources.processes import this_process
 from resources.records import SceneOrigin
 from resources.store import open_store
 
@@ -62,7 +64,12 @@ def test_a_tick_that_died_is_asked_for_again_with_the_same_run_keys(sweeper: Swe
     assert [r.run_key for r in sweeper.tick(MORNING)] == first
 
 
-def test_a_scene_that_is_being_made_is_left_alone(sweeper: Sweeper) -> None:
+@pytest.mark.parametrize(
+    ("process", "asked"), [(this_process(), [KEYS[0], KEYS[2]]), ("1-7-gone", [KEYS[0], KEYS[1], KEYS[2]])]
+)
+def test_a_scene_that_is_being_made_is_left_alone_unless_its_process_was_killed(
+    sweeper: Sweeper, process: str, asked: list[str]
+) -> None:
     @dg.op
     def nothing() -> None: ...
 
@@ -70,7 +77,7 @@ def test_a_scene_that_is_being_made_is_left_alone(sweeper: Sweeper) -> None:
     def job() -> None:
         nothing()
 
-    started = dg.DagsterRunStatus.STARTED
-    sweeper.instance.create_run_for_job(job, status=started, tags={"dagster/partition": KEYS[1]})
+    tags = {**process_tags(), PROCESS_TAG: process, "dagster/partition": KEYS[1]}
+    sweeper.instance.create_run_for_job(job, status=dg.DagsterRunStatus.STARTED, tags=tags)
     sweeper.tick(NIGHT)
-    assert [r.partition_key for r in sweeper.tick(MORNING)] == [KEYS[0], KEYS[2]]
+    assert [r.partition_key for r in sweeper.tick(MORNING)] == asked

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import dagster as dg
 import pytest
-from conftest import Project
+from projects import Project
 
 from flymirage_assets.report import SCENE_PRODUCTS
 from flymirage_core.annotation.boxes import BoxMap
