@@ -29,7 +29,7 @@ class Section(BaseModel):
 class GenerationSettings(Section):
     """The embedded world model."""
 
-    gaussians: Count = 400_000
+    gaussians: Count = 600_000
     """About how many Gaussians a generated world has."""
 
 

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.worldgen.catalogue import KINDS
+from flymirage_core.worldgen.facades import HOUSE_WIDTH, PLASTERS, Look, gables, glass
 from flymirage_core.worldgen.finishes import dressed, finish
 from flymirage_core.worldgen.materials import Material
 from flymirage_core.worldgen.noise import fractal
-from flymirage_core.worldgen.outdoors import HOUSE_WIDTH, PLASTERS, Look, flat, gables, glass
+from flymirage_core.worldgen.outdoors import flat
 from flymirage_core.worldgen.parts import Finish, box, paint
 from flymirage_core.worldgen.place import Place, Space, Wall
 from flymirage_core.worldgen.structure import Structure, against, pierced, placed
@@ -108,7 +109,7 @@ def _line(a: Float, b: Float, towards: Float, height: float) -> Wall:
     """A wall from ``a`` to ``b`` (2,) that looks towards a point."""
     length = float(np.hypot(*(b - a)))
     along = (b - a) / length
-    inward = np.array([-along[1], along[0]])
+    inward = np.array([along[1], -along[0]])
     if inward @ (towards - (a + b) / 2) < 0:
         a, along, inward = b, -along, -inward
     return Wall(a, along, inward, length, height, "facade")

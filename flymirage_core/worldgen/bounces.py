@@ -65,7 +65,8 @@ class Patches:
 
         normals = mean(surfels.normals)
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
-        return Patches(origin, voxel, table, mean(surfels.points), normals, mean(surfels.albedo), mean(glow))
+        spots = surfels.points[_foremost(surfels.points, own, normals)]
+        return Patches(origin, voxel, table, spots, normals, mean(surfels.albedo), mean(glow))
 
     def at(self, points: Float, normals: Float) -> Int:
         """(N,) number of the patch that a surface place belongs to; `UNKNOWN` where there is none."""
@@ -90,6 +91,16 @@ class Patches:
                 total += weight[:, None] * values[found]
                 weights += weight
         return np.asarray(total / weights[:, None])
+
+
+def _foremost(points: Float, own: Int, normals: Float) -> Int:
+    """(P,) the surface place of each patch that lies furthest along its normal.
+
+    The mean of a wall's face and of the frame set back in it lies inside the wall, where all is dark.
+    """
+    order = np.lexsort(((points * normals[own]).sum(axis=1), own))
+    last = np.append(np.flatnonzero(np.diff(own[order])), len(order) - 1)
+    return np.asarray(order[last])
 
 
 def _cells(points: Float, origin: Float, voxel: float, shape: Int) -> Int:

@@ -43,6 +43,10 @@ OPEN_SHARE: Final = 0.5
 """In the open air pictures are exposed for at least this share of the light of open ground: crowns hold much shade."""
 EXPOSED_FOR: Final = 9.0
 """Metres from the origin within which surface counts most for the exposure."""
+THROUGH: Final = 0.4
+"""Of the light that a leaf gives off, what came in on its other side."""
+SKY_FILTER: Final = 0.55
+"""Share of the sky's radiance that reaches the film."""
 FILM_TOE, FILM_SHOULDER, FILM_SLOPE, FILM_BASE = 0.06, 1.0, 0.34, 0.16
 """A rational curve (x^2 + toe x) / (shoulder x^2 + slope x + base): dark toe, long shoulder, 1 at infinity."""
 
@@ -91,6 +95,21 @@ class BakedLight:
         """(N, 3) at surface points (N, 3) with unit normals (N, 3)."""
         direct = direct_light(points, normals, self.illumination, self.shadows)
         return direct + self.patches.between(self.indirect, points, normals)
+
+    def through(self, points: Float, normals: Float, leaf: NDArray[np.bool_]) -> Float:
+        """(N, 3) irradiance; of what is ``leaf`` (N,) a share `THROUGH` is that of its other side."""
+        result = self.irradiance(points, normals)
+        back = self.irradiance(points[leaf], -normals[leaf])
+        result[leaf] += THROUGH * (back - result[leaf])
+        return result
+
+    def seen_sky(self, directions: Float) -> Float:
+        """Display colours (N, 3) of the sky along unit ``directions`` (N, 3), through a filter that darkens it alone.
+
+        Pictures are exposed for what stands in the shade; photographers put a graduated filter before the sky.
+        """
+        sky = self.illumination.sky
+        return np.zeros((len(directions), 3)) if sky is None else self.seen(SKY_FILTER * sky.radiance(directions))
 
     def seen(self, radiance: Float) -> Float:
         """Display colours (N, 3), sRGB coded in [0, 1], of linear radiance (N, 3)."""

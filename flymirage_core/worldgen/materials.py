@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from flymirage_core.worldgen.colours import linear_rgb
 from flymirage_core.worldgen.noise import fractal
 from flymirage_core.worldgen.pictured import PICTURES
-from flymirage_core.worldgen.textures import TEXTURES
+from flymirage_core.worldgen.textures import JOINTS, TEXTURES, runs
 
 Float = NDArray[np.float64]
 
@@ -36,6 +36,7 @@ class Material:
     ink: tuple[float, float, float] = (0.02, 0.02, 0.022)  # second colour: letters, stripes, joints
     words: str = ""  # lettering of the texture "text"; "|" starts a new line
     wear: float = 0.0  # 0 new .. 1 dirty and faded
+    stain: float = 0.0  # 0 none .. 1 dark runs of water from the patch's upper edge
 
     def shaded(self, factor: float) -> "Material":
         """The same material, lighter or darker."""
@@ -88,7 +89,12 @@ def albedo(material: Material, uv: Float, extent: tuple[float, float], points: F
         return np.clip(picture(uv, extent, material.seed, material.words, material.colour, material.ink), 0.0, 0.95)
     tint = TEXTURES[material.texture](uv, extent, points, material.seed)
     colours = np.asarray(material.colour) * tint
+    if material.texture in JOINTS:
+        joint = JOINTS[material.texture](uv)[:, None]  # (N, 1)
+        colours = colours * (1 - joint) + np.asarray(material.ink) * joint
     if material.wear > 0:
         dirt = np.clip(fractal(points * 2.7, material.seed + 101) + 0.1, 0.0, 1.0) * material.wear  # (N,)
         colours = colours * (1 - 0.55 * dirt[:, None]) + 0.03 * dirt[:, None]
+    if material.stain > 0:
+        colours = colours * (1 - 0.5 * material.stain * runs(uv, extent, points, material.seed))[:, None]
     return np.clip(colours, 0.0, 0.95)

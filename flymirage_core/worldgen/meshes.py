@@ -25,6 +25,7 @@ class TexturedMesh:
     local: Float  # (V, 3) coordinates in the part's own frame: what textures are made of
     extent: Float  # (V, 2) of the patch, metres
     materials: tuple[Material, ...]  # of each part
+    leaves: NDArray[np.bool_]  # (M,) which parts are leaves, through which light shines
 
     def albedo(self, faces: NDArray[np.int64], weights: Float) -> Float:
         """Linear albedo (N, 3) at barycentric ``weights`` (N, 3) of ``faces`` (N,)."""
@@ -72,7 +73,16 @@ def textured_mesh(parts: Sequence[Part]) -> TexturedMesh:
             columns.append((placed, seen + start, np.full(len(triangles), number), coordinates, points, sizes))
             start += len(points)
     vertices, faces, numbers, uv, local, extents = (np.concatenate(column) for column in zip(*columns, strict=True))
-    return TexturedMesh(vertices, faces, numbers, uv, local, extents, tuple(p.material for p in parts))
+    return TexturedMesh(
+        vertices,
+        faces,
+        numbers,
+        uv,
+        local,
+        extents,
+        tuple(p.material for p in parts),
+        np.array([isinstance(p.surface, Leaves) for p in parts]),
+    )
 
 
 def corners_of(part: Part) -> Float:

@@ -14,6 +14,15 @@ Colour = tuple[float, float, float]
 Picture = Callable[[Float, Extent, int, str, Colour, Colour], Float]
 """(uv (N, 2), extent, seed, words, colour, ink) -> linear albedo (N, 3)."""
 
+_CLOTHS = (
+    (0.95, 0.9, 0.8),
+    (0.9, 0.92, 0.95),
+    (0.8, 0.7, 0.55),
+    (0.75, 0.45, 0.4),
+    (0.5, 0.6, 0.65),
+    (0.95, 0.95, 0.9),
+)
+"""Tints of curtains and blinds."""
 LETTERING_HEIGHT = 160
 """Pixels of a sign's raster; letters stay legible where splats are fine enough."""
 STRIPE = 0.09
@@ -83,6 +92,34 @@ def _sky(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, ink: 
     shade = value_noise(np.stack([x * 14.0, y * 14.0], 1), seed + 6)
     leaves = np.array([0.16, 0.24, 0.12]) * (1 + 0.35 * shade)[:, None]
     return np.where(trees[:, None], leaves, sky)
+
+
+def _interior(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, ink: Colour) -> Float:
+    """A window seen from outside: a dark room, curtains or a blind, and over them the sky and roofs it mirrors."""
+    draw = np.random.default_rng(seed)
+    kind, side, low = draw.integers(5), draw.uniform(0.16, 0.34), draw.uniform(0.25, 0.8)
+    cloth = np.array(_CLOTHS[int(draw.integers(len(_CLOTHS)))])
+    x, y = uv[:, 0] / extent[0], uv[:, 1] / extent[1]
+    image = np.tile([0.035, 0.036, 0.04], (len(uv), 1)) * (0.6 + 0.8 * y + 0.4 * value_noise(uv * 1.8, seed))[:, None]
+    if kind in (0, 1):  # curtains, drawn to the sides
+        edge = side * (1 - 0.35 * np.sin(np.pi * np.clip(y, 0, 1)) * (kind == 1))
+        hung = (x < edge) | (x > 1 - edge)
+        folds = 0.75 + 0.25 * np.sin(uv[:, 0] * 2 * np.pi / 0.09 + 0.6 * value_noise(uv * 3.0, seed))
+        image = np.where(hung[:, None], 0.34 * cloth * folds[:, None], image)
+    elif kind == 2:  # a roller blind
+        image = np.where((y > low)[:, None], 0.36 * cloth * (0.9 + 0.1 * y)[:, None], image)
+    elif kind == 3:  # net curtains over all of it
+        folds = 0.8 + 0.2 * np.sin(uv[:, 0] * 2 * np.pi / 0.11)
+        image = 0.7 * image + 0.16 * folds[:, None]
+    roofs = 0.42 + 0.12 * value_noise(np.stack([x * 2.2, 0 * x], 1), seed + 3) + 0.25 * (x - 0.5) * draw.uniform(-1, 1)
+    sky = np.clip((y - roofs) * 12, 0, 1)[:, None] * np.array([0.17, 0.21, 0.27]) * (0.75 + 0.4 * y)[:, None]
+    return np.asarray((0.75 * image + draw.uniform(0.5, 1.0) * sky) * np.asarray(colour))
+
+
+def _louvres(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, ink: Colour) -> Float:
+    """Slats of 7 cm of ``colour``, each dark at its foot."""
+    share = (uv[:, 1] / 0.07) % 1
+    return np.asarray((0.55 + 0.5 * share)[:, None] * np.asarray(colour))
 
 
 def _text(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, ink: Colour) -> Float:
@@ -190,5 +227,5 @@ def _page(uv: Float, extent: Extent, seed: int, words: str, colour: Colour, ink:
 PICTURES: dict[str, Picture] = {
     "painting": _painting, "landscape": _landscape, "screen": _screen, "notes": _notes, "sky": _sky, "text": _text,
     "hazard": _hazard, "stripes": _stripes, "checks": _checks, "grille": _grille, "map": _map, "dial": _dial,
-    "buttons": _buttons, "labels": _labels, "page": _page,
+    "buttons": _buttons, "labels": _labels, "page": _page, "interior": _interior, "louvres": _louvres,
 }  # fmt: skip

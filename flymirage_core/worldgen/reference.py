@@ -46,7 +46,7 @@ class ReferenceTracer:
         for _ in range(LAYERS):
             hits = self.caster.hits(origins[active], rays[active])
             missed = active[hits.face < 0]
-            result[missed] += left[missed, None] * self._sky(rays[missed])
+            result[missed] += left[missed, None] * self.world.light.seen_sky(rays[missed])
             met = hits.face >= 0
             active, faces, distance, weights = active[met], hits.face[met], hits.distance[met], hits.weights[met]
             if len(active) == 0:
@@ -65,10 +65,5 @@ class ReferenceTracer:
         normals = normals * -np.sign((normals * rays).sum(axis=1))[:, None]
         albedo = self.world.mesh.albedo(faces, weights)
         glow = self.world.mesh.emission(faces)[:, None] * light_unit(self.world.light)
-        light = self.world.light.irradiance(points, normals)
+        light = self.world.light.through(points, normals, self.world.mesh.leaves[self.world.mesh.face_part[faces]])
         return self.world.light.seen(albedo * (light / np.pi + glow))
-
-    def _sky(self, rays: Float) -> Float:
-        if self.world.sky is None:
-            return np.zeros((len(rays), 3))
-        return self.world.light.seen(self.world.sky.radiance(rays))

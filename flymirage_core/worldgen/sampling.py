@@ -1,6 +1,6 @@
 """From an assembled world to Gaussians: surfaces cut into surfels, lit, and made flat splats; and the sky's dome."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -14,14 +14,13 @@ from flymirage_core.worldgen.lighting import BakedLight, bake, solid_faces
 from flymirage_core.worldgen.meshes import TexturedMesh, textured_mesh
 from flymirage_core.worldgen.place import Place
 from flymirage_core.worldgen.rays import RayCaster
-from flymirage_core.worldgen.sky import Sky
 from flymirage_core.worldgen.spacing import coarseness, spacing_for
-from flymirage_core.worldgen.surfaces import Leaves, Surfels, surfels_of
+from flymirage_core.worldgen.surfaces import Leaves, Part, Sheet, Surfels, surfels_of, vector
 from flymirage_core.worldgen.windows import illumination_of
 
 Float = NDArray[np.float64]
 
-OVERLAP: Final = 0.6
+OVERLAP: Final = 0.58
 """A splat's standard deviation as a share of its surfel's side: the least that leaves no pinholes at corners."""
 THICKNESS: Final = 0.002
 """Standard deviation along the normal, metres."""
@@ -36,7 +35,11 @@ COVER: Final = 0.045
 """Metres: what has a surface this close before it cannot be seen."""
 FLUSH: Final = 0.02
 """Metres."""
-DOME_SPLATS: Final = 5200
+BACKING_SIDES: Final = 4.0
+"""Side of a splat that backs a face, as a multiple of the spacing."""
+BEHIND, MARGIN = 0.1, 0.14
+"""Metres from a face to what backs it, and from a face's edges to the edges of that."""
+DOME_SPLATS: Final = 9000
 SKY_SIDES: Final = 1.45
 """Side of a sky splat as a share of what would just tile the dome."""
 
@@ -48,7 +51,6 @@ class LitWorld:
     cloud: GaussianCloud
     mesh: TexturedMesh
     light: BakedLight
-    sky: Sky | None
 
 
 def lit_world(assembly: Assembly, count: int) -> LitWorld:
@@ -66,11 +68,13 @@ def lit_world(assembly: Assembly, count: int) -> LitWorld:
     is_lamp = np.repeat(np.array(lamps, bool), [len(p) for p in pieces])
     light = bake(surfels, is_lamp, mesh, solid, illumination)
     glow = surfels.emission[:, None] * light_unit(light)
-    radiance = surfels.albedo * (light.irradiance(surfels.points, surfels.normals) / np.pi + glow)
-    cloud = splats(surfels, light.seen(radiance), np.where(leaf, LEAF_OPACITY, OPACITY))
+    radiance = surfels.albedo * (light.through(surfels.points, surfels.normals, leaf) / np.pi + glow)
+    cloud = _joined(
+        splats(surfels, light.seen(radiance), np.where(leaf, LEAF_OPACITY, OPACITY)), _backing(assembly, spacing, light)
+    )
     if illumination.sky is not None:
-        cloud = _joined(cloud, dome(illumination.sky, light))
-    return LitWorld(cloud, mesh, light, illumination.sky)
+        cloud = _joined(cloud, dome(light))
+    return LitWorld(cloud, mesh, light)
 
 
 def _cut(
@@ -87,6 +91,31 @@ def _cut(
     kept = surfels[seen]
     pieces = [kept[np.arange(a, b)] for a, b in zip([0, *ends[:-1]], ends, strict=True)]
     return pieces, leaf[seen]
+
+
+def _backing(assembly: Assembly, spacing: float, light: BakedLight) -> GaussianCloud:
+    """Coarse splats a little behind the building's large faces, of the faces' colours.
+
+    Between the splats of a face a few per cent of what is behind shows, which would be nothing: a dark grid.
+    """
+    side = BACKING_SIDES * spacing
+    parts = [p for t in assembly.things if t.object_id < 0 for p in t.parts if isinstance(p.surface, Sheet)]
+    inner = [q for p in parts if p.material.opacity == 1 and p.material.emission == 0 for q in _inset(p, side)]
+    surfels = Surfels.joined([surfels_of(p, side) for p in inner])
+    colours = light.seen(surfels.albedo * light.irradiance(surfels.points, surfels.normals) / np.pi)
+    behind = replace(surfels, points=surfels.points - BEHIND * surfels.normals)
+    return splats(behind, colours, np.full(len(surfels), OPACITY))
+
+
+def _inset(part: Part, side: float) -> list[Part]:
+    """A face less a margin all round, cut evenly, so that what backs it does not look out at its edges; or nothing."""
+    assert isinstance(part.surface, Sheet)
+    corner, a, b = (np.asarray(v) for v in (part.surface.corner, part.surface.a, part.surface.b))
+    u, v = (MARGIN / max(float(np.linalg.norm(e)), 1e-9) for e in (a, b))
+    if max(u, v) > 0.3:
+        return []
+    inner = Sheet(vector(corner + u * a + v * b), vector((1 - 2 * u) * a), vector((1 - 2 * v) * b))
+    return [replace(part, surface=inner, material=replace(part.material, joints=(0, 0, 0), stretch=1.0, detail=1.0))]
 
 
 def light_unit(light: BakedLight) -> float:
@@ -116,7 +145,7 @@ def splats(surfels: Surfels, colours: Float, opacity: Float) -> GaussianCloud:
     )
 
 
-def dome(sky: Sky, light: BakedLight) -> GaussianCloud:
+def dome(light: BakedLight) -> GaussianCloud:
     """The sky as large flat splats on a sphere of `BEYOND` metres round the origin, facing it; a bit below it too."""
     i = np.arange(2 * DOME_SPLATS) + 0.5
     z = 1 - i / DOME_SPLATS
@@ -131,7 +160,7 @@ def dome(sky: Sky, light: BakedLight) -> GaussianCloud:
     n = len(directions)
     blank = np.zeros((n, 3))
     surfels = Surfels(BEYOND * directions, a, b, -directions, blank, np.zeros(n), np.ones(n))
-    return splats(surfels, light.seen(sky.radiance(directions)), np.full(n, OPACITY))
+    return splats(surfels, light.seen_sky(directions), np.full(n, OPACITY))
 
 
 def _joined(one: GaussianCloud, other: GaussianCloud) -> GaussianCloud:

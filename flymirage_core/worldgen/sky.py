@@ -39,7 +39,13 @@ OVERCAST_ZENITH, OVERCAST_HORIZON = 4.6, 3.3
 OVERCAST_TINT = (0.96, 1.0, 1.05)
 GROUND_SHARE = 0.22
 """Radiance of far ground below the horizon as a share of the horizon's."""
-CLOUD_SCALE, CLOUD_COVER = 2.6, 0.55
+CLOUD_COVER, OVERCAST_COVER = 0.5, 1.3
+"""How much of the sky clouds take: a little less than this share; above 1 there is no gap between them."""
+CLOUD_LAYER, CLOUD_SCALE, CLOUD_EDGE = 0.16, 1.1, 0.3
+"""How far away clouds at the horizon are, how small they are, and how soft their rims."""
+CLOUD_BRIGHT, CLOUD_GREY = 1.7, 0.45
+"""Radiance of a cloud's rim, as a share of the horizon's, and how much darker its middle is."""
+CLOUD_TINT = np.array([1.0, 1.0, 1.02])
 GLOW = 0.55
 """Of the haze round the sun, as a share of the horizon's radiance."""
 
@@ -59,7 +65,7 @@ class Sky:
     zenith: Float  # (3,)
     horizon: Float  # (3,)
     sun: Sun | None
-    clouds: float  # 0 = none
+    clouds: float  # share of the sky that they take, 0 = none, above 1 all
     seed: int
 
     def radiance(self, directions: Float) -> Float:
@@ -71,14 +77,28 @@ class Sky:
             near = np.clip(directions @ self.sun.towards, 0.0, 1.0)[:, None]
             result = result + GLOW * self.horizon * (near**24 + 0.3 * near**4)
         if self.clouds > 0:
-            flat = directions[:, :2] / (0.18 + np.clip(up, 0.0, 1.0))[:, None] * CLOUD_SCALE / 2
-            puff = value_noise(flat, self.seed) + 0.55 * value_noise(flat * 2.3, self.seed + 1)
-            puff += 0.3 * value_noise(flat * 5.1, self.seed + 2)
-            cover = np.clip((puff + self.clouds - 0.5) * 1.1, 0.0, 1.0)[:, None] * np.clip(up * 7, 0, 1)[:, None]
-            white = (self.horizon.mean() * 0.6 + self.zenith.mean() * 0.9) * np.array([1.02, 1.0, 0.98])
+            puff = self._puffs(directions)
+            cover = _smooth((puff - 1 + self.clouds) / CLOUD_EDGE)[:, None] * np.clip(up * 9, 0, 1)[:, None]
+            thick = _smooth((puff - 1 + min(self.clouds, 0.85)) * 1.6)[:, None]  # their middles are grey below
+            white = self.horizon.mean() * CLOUD_BRIGHT * (1 - CLOUD_GREY * thick) * CLOUD_TINT
             result = result * (1 - cover) + white * cover
         below = np.clip(-up * 25.0, 0.0, 1.0)[:, None]
         return np.asarray(result * (1 - below) + GROUND_SHARE * self.horizon * below)
+
+    def _puffs(self, directions: Float) -> Float:
+        """(N,) how much cloud there is, about 0 to 1: noise on a flat layer overhead, drawn out by the wind."""
+        flat = directions[:, :2] / (CLOUD_LAYER + np.clip(directions[:, 2:], 0.0, 1.0)) * CLOUD_SCALE
+        flat = flat + 0.55 * np.stack(
+            [value_noise(flat * 0.8, self.seed + 7), value_noise(flat * 0.8, self.seed + 8)], 1
+        )
+        octaves = (0.5**k * value_noise(flat * 2.1**k, self.seed + k) for k in range(5))
+        return np.asarray(0.5 + 0.42 * sum(octaves))
+
+
+def _smooth(share: Float) -> Float:
+    """A soft step from 0 to 1."""
+    t = np.clip(share, 0.0, 1.0)
+    return np.asarray(t * t * (3 - 2 * t))
 
 
 def sky_of(light: Light, seed: int) -> Sky:
@@ -92,7 +112,7 @@ def sky_of(light: Light, seed: int) -> Sky:
         return Sky(zenith, horizon, Sun(towards, np.array(hour.sun)), CLOUD_COVER, seed)
     level = (horizon.mean() + zenith.mean()) / (np.mean(HOURS["noon"].horizon) + np.mean(HOURS["noon"].zenith))
     tint = np.array(OVERCAST_TINT) * level
-    return Sky(OVERCAST_ZENITH * tint, OVERCAST_HORIZON * tint, None, 0.0, seed)
+    return Sky(OVERCAST_ZENITH * tint, OVERCAST_HORIZON * tint, None, OVERCAST_COVER, seed)
 
 
 def exposure_of(light: Light) -> float:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from flymirage_core.worldgen.assembly import Assembly
 from flymirage_core.worldgen.meshes import TexturedMesh
-from flymirage_core.worldgen.surfaces import EDGE_CELLS, Leaves
+from flymirage_core.worldgen.surfaces import EDGE_CELLS, FINE_JOINTS, Leaves
 
 Float = NDArray[np.float64]
 
@@ -62,6 +62,7 @@ def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: i
     leaves = sum(2 * len(p.surface.centres) for p in parts if isinstance(p.surface, Leaves))
     solid = np.array([not isinstance(p.surface, Leaves) for p in parts])
     detail = np.array([p.material.detail for p in parts]) * factors
+    joints = np.array([p.material.joints[:2] for p in parts])  # (M, 2)
     stretch = np.sqrt([p.material.stretch for p in parts])
     first = mesh.faces[:, 0]
     rows = np.unique(np.column_stack([mesh.face_part, mesh.extent[first]])[solid[mesh.face_part]], axis=0)
@@ -72,7 +73,8 @@ def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: i
     for _ in range(HALVINGS):
         spacing = np.sqrt(low * high)
         side = spacing * detail[part]
-        cells = _cells(extent[:, 0] / (side * stretch[part])) * _cells(extent[:, 1] / (side / stretch[part]))
+        sides = np.stack([side * stretch[part], side / stretch[part]], 1)  # (K, 2)
+        cells = _cells(extent, sides, joints[part]).prod(axis=1)
         if SEEN * (cells * repeats).sum() + leaves > count:
             low = spacing
         else:
@@ -87,6 +89,9 @@ def _areas(mesh: TexturedMesh, count: int) -> Float:
     return np.asarray(np.bincount(mesh.face_part, size, count), np.float64)
 
 
-def _cells(length: Float) -> Float:
-    """About how many cells `surfaces.cells` makes of a length in spacings."""
-    return np.where(length < 0.4, 1.0, np.maximum(length + 4 - 2 * sum(EDGE_CELLS), 3.0))
+def _cells(length: Float, spacing: Float, pitch: Float) -> Float:
+    """About how many cells `surfaces.cells` makes of lengths with joints of a pitch (0: none)."""
+    share = length / spacing
+    plain = np.where(share < 0.4, 1.0, np.maximum(share + 4 - 2 * sum(EDGE_CELLS), 3.0))
+    between = 1 + np.maximum(np.rint(pitch / spacing), 1)
+    return np.where(pitch > FINE_JOINTS * spacing, length / np.maximum(pitch, 1e-9) * between, plain)

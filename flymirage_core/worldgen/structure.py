@@ -47,9 +47,15 @@ def against(wall: Wall, parts: list[Part], along: float, bottom: float = 0.0) ->
 
 
 def pierced(
-    wall: Wall, material: Material, holes: list[Opening], span: tuple[float, float], low: float, high: float
+    wall: Wall,
+    material: Material,
+    holes: list[Opening],
+    span: tuple[float, float],
+    low: float,
+    high: float,
+    below: Material | None = None,
 ) -> list[Part]:
-    """The wall's face between ``span`` along it and ``low`` to ``high``, less its holes."""
+    """The wall's face between ``span`` along it and ``low`` to ``high``, less its holes; under them of ``below``."""
     parts: list[Part] = []
     cuts = sorted({span[0], span[1], *(float(np.clip(x, *span)) for h in holes for x in (h.left, h.right))})
     for left, right in pairwise(cuts):
@@ -62,7 +68,8 @@ def pierced(
             if bottom - start > 1e-3:
                 corner = (*wall.at(left, 0.0), start)
                 along = (*(wall.along * (right - left)), 0.0)
-                parts.append(Part(Sheet(corner, along, (0.0, 0.0, bottom - start)), material))
+                face = below if below and top != high else material
+                parts.append(Part(Sheet(corner, along, (0.0, 0.0, bottom - start)), face))
             start = max(start, top)
     return parts
 

@@ -18,6 +18,8 @@ Vector = tuple[float, float, float]
 
 EDGE_CELLS = (0.25, 0.5)
 """Widths of a patch's outermost cells as shares of the spacing: narrow, so that silhouettes are crisp."""
+FINE_JOINTS = 1.8
+"""Joints are cut where they are this many spacings apart."""
 QUARTERS = ((-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), (0.25, 0.25))
 CORNER = 0.6
 """Radians: where a patch turns more from one grid line to the next, it has an edge."""
@@ -134,8 +136,11 @@ def surfels_of(part: Part, spacing: float) -> Surfels:
 
 
 def cells(length: float, spacing: float, pitch: float = 0.0, joint: float = 0.0) -> tuple[Float, Float]:
-    """Centres and widths of cells that fill ``length``: even inside, narrow at both ends and at each joint."""
-    if pitch > 0:
+    """Centres and widths of cells that fill ``length``: even inside, narrow at both ends and at each joint.
+
+    Joints so close that they would make the cells much finer than ``spacing`` are passed over.
+    """
+    if pitch > FINE_JOINTS * spacing:
         joints = np.arange(pitch, length - joint, pitch)
         bounds = np.concatenate([[0.0], np.sort(np.concatenate([joints - joint / 2, joints + joint / 2])), [length]])
         edges = [np.linspace(a, b, max(1, round((b - a) / spacing)) + 1)[:-1] for a, b in pairwise(bounds)]

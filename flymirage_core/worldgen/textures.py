@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flymirage_core.worldgen.noise import Float, fractal, lattice_hash, value_noise
 
@@ -61,16 +62,40 @@ def _tiled(pitch: float) -> Texture:
     return tiles
 
 
-def _bricks(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
-    height, length = 0.1, 0.3
+BRICK: Extent = (0.3, 0.1)
+"""Metres of a brick with its joint."""
+
+
+def _brick(uv: Float) -> tuple[NDArray[np.int64], Float]:
+    """(N, 2) which brick, and (N, 2) metres from its lower left corner; every other course is shifted by half."""
+    length, height = BRICK
     row = np.floor(uv[:, 1] / height).astype(np.int64)
     along = uv[:, 0] / length + 0.5 * (row % 2)
     brick = np.stack([np.floor(along).astype(np.int64), row], 1)
-    across = uv[:, 1] - row * height
-    end = (along - brick[:, 0]) * length
-    mortar = (np.minimum(across, height - across) < 0.006) | (np.minimum(end, length - end) < 0.008)
-    tone = 1 + 0.4 * (lattice_hash(brick, seed) - 0.5) + 0.08 * value_noise(uv * 12.0, seed + 1)
-    return _grey(np.where(mortar, 1.25, tone))
+    return brick, np.stack([(along - brick[:, 0]) * length, uv[:, 1] - row * height], 1)
+
+
+def _bricks(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
+    """Each brick of its own tone and warmth, a few of them burnt dark, over slow clouds of soot."""
+    brick, _ = _brick(uv)
+    warm = lattice_hash(brick, seed + 5) - 0.5
+    tone = 1 + 0.34 * (lattice_hash(brick, seed) - 0.5) + 0.14 * value_noise(points * 0.7, seed + 1)
+    tone = tone * np.where(lattice_hash(brick, seed + 9) > 0.94, 0.6, 1.0)
+    return np.stack([tone * (1 + 0.1 * warm), tone * (1 - 0.1 * warm), tone * (1 - 0.25 * warm)], 1)
+
+
+def _mortar(uv: Float) -> Float:
+    """(N,) 1 in the joints of bricks."""
+    _, inside = _brick(uv)
+    return (np.minimum(inside, np.array(BRICK) - inside) < (0.006, 0.006)).any(axis=1).astype(float)
+
+
+def runs(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
+    """(N,) how much dirt rain has washed down from a patch's upper edge: streaks that fade in about a metre."""
+    down = extent[1] - uv[:, 1]
+    streak = value_noise(np.stack([uv[:, 0] * 5.0, 0.25 * down], 1), seed + 61)
+    broad = value_noise(np.stack([uv[:, 0] * 1.1, 0.1 * down], 1), seed + 62)
+    return np.asarray(np.clip(0.35 + 0.8 * streak + 0.5 * broad, 0.0, 1.0) * np.exp(-down / 0.9))
 
 
 def _carpet(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
@@ -180,7 +205,23 @@ def _asphalt(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
     """Fine stone, large worn patches, and a few cracks."""
     patch = fractal(points[:, :2] * 0.35, seed)
     crack = np.exp(-((fractal(points[:, :2] * 0.7, seed + 6) / 0.012) ** 2))
-    return _grey(1 + 0.16 * patch + 0.10 * value_noise(points * 30.0, seed + 1) - 0.35 * crack)
+    cell = np.floor(points[:, :2] / (3.7, 4.6)).astype(np.int64)
+    at = points[:, :2] / (3.7, 4.6) - cell
+    reach = 0.12 + 0.25 * np.stack([lattice_hash(cell, seed + 11), lattice_hash(cell, seed + 12)], 1)
+    mended = (np.abs(at - 0.5) < reach).all(axis=1) & (lattice_hash(cell, seed + 13) > 0.55)
+    fine = 0.10 * value_noise(points * 30.0, seed + 1) - 0.35 * crack
+    return _grey((1 + 0.16 * patch + fine) * np.where(mended, 0.72, 1.0))
+
+
+def _ashlar(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
+    """Dressed stone blocks of 72 by 36 cm."""
+    row = np.floor(uv[:, 1] / 0.36).astype(np.int64)
+    along = uv[:, 0] / 0.72 + 0.5 * (row % 2)
+    cell = np.stack([np.floor(along).astype(np.int64), row], 1)
+    inside = np.stack([(along - cell[:, 0]) * 0.72, uv[:, 1] - row * 0.36], 1)
+    joint = (np.minimum(inside, [0.72, 0.36] - inside) < 0.012).any(axis=1)
+    tone = 1 + 0.16 * (lattice_hash(cell, seed) - 0.5) + 0.1 * fractal(points * 2.0, seed + 1)
+    return _grey(np.where(joint, 0.62, tone))
 
 
 def _gravel(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
@@ -191,15 +232,14 @@ def _gravel(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
 
 
 def _cobbles(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
-    """Setts of 14 cm in shifted rows, domed, with dark joints."""
-    row = np.floor(uv[:, 1] / 0.14).astype(np.int64)
-    along = uv[:, 0] / 0.14 + 0.5 * (row % 2) + 0.15 * (lattice_hash(row[:, None], seed) - 0.5)
+    """Setts of 24 by 16 cm in shifted rows, domed, with dark joints."""
+    row = np.floor(uv[:, 1] / 0.16).astype(np.int64)
+    along = uv[:, 0] / 0.24 + 0.5 * (row % 2)
     cell = np.stack([np.floor(along).astype(np.int64), row], 1)
-    inside = np.stack([along - cell[:, 0], uv[:, 1] / 0.14 - row], 1)
-    edge = np.minimum(inside, 1 - inside).min(axis=1)
-    dome = np.clip(edge / 0.16, 0.0, 1.0)
-    tone = (0.8 + 0.42 * lattice_hash(cell, seed + 1)) * (0.5 + 0.5 * dome)
-    return _grey(tone * (1 + 0.06 * value_noise(uv * 14.0, seed + 2)))
+    inside = np.stack([(along - cell[:, 0]) * 0.24, uv[:, 1] - row * 0.16], 1)
+    edge = np.minimum(inside, np.array([0.24, 0.16]) - inside).min(axis=1)
+    tone = (0.82 + 0.36 * lattice_hash(cell, seed + 1)) * np.where(edge < 0.01, 0.5, 0.9 + np.clip(edge, 0, 0.04) * 3)
+    return _grey(tone * (1 + 0.08 * value_noise(uv * 2.0, seed + 2)))
 
 
 def _bark(uv: Float, extent: Extent, points: Float, seed: int) -> Float:
@@ -244,5 +284,7 @@ TEXTURES: dict[str, Texture] = {
     "enamel": _enamel, "rust": _rust, "corrugated": _corrugated, "stone": _stone, "marble": _marble,
     "concrete": _concrete, "terrazzo": _terrazzo, "paper": _paper, "leaf": _leaf, "grass": _grass,
     "asphalt": _asphalt, "gravel": _gravel, "cobbles": _cobbles, "bark": _bark, "soil": _soil, "water": _water,
-    "glass": _glass, "shingles": _shingles, "rug": _rug,
+    "glass": _glass, "shingles": _shingles, "rug": _rug, "ashlar": _ashlar,
 }  # fmt: skip
+JOINTS: dict[str, Callable[[Float], Float]] = {"bricks": _mortar}
+"""Where a texture shows the material's second colour: uv (N, 2) -> share (N,)."""

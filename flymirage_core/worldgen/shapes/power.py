@@ -101,6 +101,7 @@ def switchgear(size: Vector, f: Finish) -> list[Part]:
     handles = [box(IRON, (0.03, 0.05, 0.18), (0.3, 0.32, z), 0.01) for z in (0.5, 1.08)]
     return [
         body,
+        *_service_back(f, 0.8, 2.0, 0.35),
         *doors,
         *meters,
         *lights,
@@ -172,7 +173,46 @@ def control_panel(size: Vector, f: Finish) -> list[Part]:
             ellipsoid(paint("red"), (0.025,) * 3, (u, 0.22, 0.91)),
         )
     ]
-    return [body, *slope, *board, *dials, *screens, *levers, box(IRON, (x, 0.02, 0.08), (0, 0.345, 0))]
+    return [
+        body,
+        *slope,
+        *board,
+        *dials,
+        *screens,
+        *levers,
+        *_service_back(f, x, 1.2, 0.3),
+        *(
+            box(patterned("light grey", "grille", "charcoal", 0.4), (0.46, 0.012, 0.2), (u, 0.352, 0.3))
+            for u in (-0.5, 0.5)
+        ),
+        *(box(f.main.shaded(1.12), (0.7, 0.02, 0.56), (u, 0.345, 0.1), 0.006) for u in (-0.38, 0.38)),
+        box(IRON, (x, 0.02, 0.08), (0, 0.345, 0)),
+    ]
+
+
+def _service_back(f: Finish, width: float, height: float, y: float) -> list[Part]:
+    """What is on the back of a cabinet that ends at -``y``: two panels with screws, louvres, a plate, a conduit."""
+    leaf, parts = (width - 0.1) / 2, []
+    vent = patterned("light grey", "grille", "charcoal", 0.4)
+    for s in (-1, 1):
+        u = s * (width / 4)
+        parts += [
+            box(f.main.shaded(1.12), (leaf - 0.03, 0.02, height - 0.14), (u, -y - 0.005, 0.08), 0.006),
+            box(vent, (leaf * 0.7, 0.012, height * 0.16), (u, -y - 0.012, height * 0.16)),
+            box(vent, (leaf * 0.7, 0.012, height * 0.1), (u, -y - 0.012, height * 0.74)),
+            box(IRON, (0.025, 0.03, 0.14), (s * 0.07, -y - 0.02, height * 0.48), 0.006),
+        ]
+        parts += [
+            box(STEEL, (0.025, 0.012, 0.025), (u + t * (leaf / 2 - 0.05), -y - 0.014, z), 0.004)
+            for t in (-1, 1)
+            for z in (0.12, height - 0.11)
+        ]
+    plate = box(paint("yellow"), (0.2, 0.006, 0.14), (width / 4, -y - 0.017, height * 0.5))
+    x = -width / 2 + 0.12
+    conduit = pipe(
+        STEEL, [(x, -y - 0.03, 0.0), (x, -y - 0.03, height * 0.6), (x, -y + 0.03, height * 0.66)], 0.022, 0.05
+    )
+    return [*parts, plate, conduit]
 
 
 def _tilted_sheet(material: Material, width: float, low: tuple[float, float], high: tuple[float, float]) -> list[Part]:

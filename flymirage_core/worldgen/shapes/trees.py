@@ -10,7 +10,7 @@ import numpy as np
 from flymirage_core.worldgen.forms import circle, crown, pipe, placed, sweep, tapered
 from flymirage_core.worldgen.parts import Finish, box, paint, turned
 from flymirage_core.worldgen.shapes.foliage import BARK, branch, flowers, fronds, lump
-from flymirage_core.worldgen.surfaces import Leaves, Part, Vector
+from flymirage_core.worldgen.surfaces import Leaves, Part, Vector, vector
 
 
 def _trunk(height: float, radius: float, rng: np.random.Generator) -> Part:
@@ -20,19 +20,30 @@ def _trunk(height: float, radius: float, rng: np.random.Generator) -> Part:
 
 
 def tree(size: Vector, f: Finish) -> list[Part]:
-    """A broad-leaved tree: forked branches that carry a head of several round masses."""
+    """A broad-leaved tree: a trunk that forks into boughs, and clumps of leaves between which the sky shows."""
     rng = f.generator()
-    leaf = replace(f.main, texture="leaf")
-    blobs: list[tuple[Vector, Vector]] = [((1.35, 1.35, 1.15), (0.0, 0.0, 4.3))]
-    parts = [_trunk(3.6, 0.16, rng)]
-    for k in range(7):
-        a = k * 0.9 + rng.uniform(-0.2, 0.2)
-        reach, high = rng.uniform(0.9, 1.45), rng.uniform(2.9, 4.4)
-        spot = (reach * np.cos(a), reach * np.sin(a), high)
-        r = rng.uniform(0.75, 1.05)
-        blobs.append(((r, r, 0.8 * r), spot))
-        parts.append(branch((0, 0, 1.7 + 0.14 * k), spot, 0.06, rng))
-    return [*parts, *crown(leaf, blobs, (0.3, 0.2), 2600, rng)]
+    leaf = replace(f.main, texture="leaf", seed=f.seed % 991)
+    k = np.arange(30)
+    up, turn = 1 - (k + 0.5) / 18, 2.4 * k + rng.uniform(-0.4, 0.4, 30)  # more of them above than below
+    flat = np.sqrt(1 - np.clip(up, -0.66, 1) ** 2)
+    out = np.stack([flat * np.cos(turn), flat * np.sin(turn), np.clip(up, -0.66, 1)], 1)
+    spots = out * [1.75, 1.75, 1.3] * rng.uniform(0.6, 1.0, (30, 1)) + [0.0, 0.0, 3.9]
+    tones = rng.permutation(30) % 3
+    parts = [_trunk(3.3, 0.17, rng)]
+    boughs = spots[rng.permutation(30)[:7]]
+    parts += [branch((0, 0, 1.5 + 0.2 * i), end, 0.075, rng) for i, end in enumerate(boughs)]
+    for spot in spots:
+        near = boughs[np.argmin(np.linalg.norm(boughs - spot, axis=1))]
+        if np.linalg.norm(near - spot) > 0.1:
+            parts.append(branch(0.45 * near + [0, 0, 1.3], spot, 0.03, rng))
+    for tone, (shade, warm) in enumerate(((1.1, 1.0), (1.6, 1.15), (2.1, 1.35))):
+        blobs = [
+            (vector(r * np.array([1.0, 1.0, 0.72])), vector(spot))
+            for r, spot in zip(rng.uniform(0.5, 0.78, 30)[tones == tone], spots[tones == tone], strict=True)
+        ]
+        r, g, b = leaf.colour
+        parts += crown(replace(leaf, colour=(r * warm, g, b)).shaded(shade), blobs, (0.26, 0.16), 1150, rng, 0.5)
+    return parts
 
 
 def birch(size: Vector, f: Finish) -> list[Part]:
