@@ -9,7 +9,7 @@ from flymirage_core.scene.keys import rng as seeded
 from flymirage_core.worldgen.backdrop import beyond
 from flymirage_core.worldgen.building import ceiling_at, indoor
 from flymirage_core.worldgen.catalogue import kind_of
-from flymirage_core.worldgen.layout import furnish
+from flymirage_core.worldgen.furnishing import furnish
 from flymirage_core.worldgen.materials import material_named
 from flymirage_core.worldgen.outdoors import outdoor
 from flymirage_core.worldgen.parts import Finish, paint, tube
