@@ -34,7 +34,7 @@ def collect_garbage(store: Store, older_than: float, removing: bool) -> Freed:
         for product in _folders(store.base / "products" / asset):
             doomed += _old_versions(store, asset, product, deadline)
     if store.is_local:
-        doomed += [f for f in _folders(store.base / "staging") if _age_of(f) < deadline and not is_used(f)]
+        doomed += [f for f in _folders(store.base / "staging") if _age_of(f) < deadline and not is_used(f.name)]
     else:
         cache = UPath(tempfile.gettempdir()) / "flymirage-cache"
         doomed += [f for f in _folders(cache) if _age_of(f) < deadline]

@@ -306,7 +306,7 @@ class Store:
         root = Path(str(self.base)) / "staging"
         root.mkdir(parents=True, exist_ok=True)
         for old in root.iterdir():
-            if time.time() - old.stat().st_mtime > STALE_STAGING_SECONDS and not is_used(old):
+            if time.time() - old.stat().st_mtime > STALE_STAGING_SECONDS and not is_used(old.name):
                 shutil.rmtree(old, ignore_errors=True)
         folder = root / f"{uuid.uuid4().hex}.{socket.gethostname()}.{this_process()}"
         folder.mkdir()
@@ -379,9 +379,9 @@ def sha256_of(path: Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def is_used(staging: Path) -> bool:
-    """True if a process of this machine writes there still, however old the clock makes it."""
-    host, _, process = staging.name.partition(".")[2].rpartition(".")
+def is_used(staging: str) -> bool:
+    """True if a process of this machine still writes to the folder of this name, however old the clock makes it."""
+    host, _, process = staging.partition(".")[2].rpartition(".")
     return host == socket.gethostname() and is_alive(process)
 
 
