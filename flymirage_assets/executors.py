@@ -7,8 +7,8 @@ import dagster as dg
 from flymirage_core.errors import InputError
 from flymirage_core.settings import Settings
 
-RAY_ENVIRONMENT = ["DAGSTER_HOME", "FLYMIRAGE_STORE", "FLYMIRAGE_EXECUTOR"]
-"""What Ray's jobs need of this process's environment; keys come from the cluster's own."""
+SECRETS = ("PASSWORD", "WEBHOOK")
+"""In names of variables: Ray shows its jobs' environment on its dashboard."""
 
 
 def executor_of(settings: Settings) -> dg.ExecutorDefinition:
@@ -24,7 +24,7 @@ def executor_of(settings: Settings) -> dg.ExecutorDefinition:
         if settings.executor == "ray":
             from dagster_ray import ray_executor
 
-            config = {"address": os.environ.get("RAY_ADDRESS", "auto"), "num_cpus": 1, "env_vars": RAY_ENVIRONMENT}
+            config = {"address": os.environ.get("RAY_ADDRESS", "auto"), "num_cpus": 1, "env_vars": ray_environment()}
             ray: dg.ExecutorDefinition = ray_executor.configured({"ray": config})
             return ray
     except ImportError as error:
@@ -33,6 +33,12 @@ def executor_of(settings: Settings) -> dg.ExecutorDefinition:
             f"'flymirage[{settings.executor}]', or set FLYMIRAGE_EXECUTOR=in_process"
         ) from error
     return dg.in_process_executor
+
+
+def ray_environment() -> list[str]:
+    """Variables of this process that Ray's jobs get, or their stages had other settings; secrets are the cluster's."""
+    ours = (name for name in os.environ if name.startswith("FLYMIRAGE_"))
+    return ["DAGSTER_HOME", *sorted(name for name in ours if not any(secret in name for secret in SECRETS))]
 
 
 def _celery_config() -> dict[str, object]:

@@ -8,6 +8,7 @@ import dagster as dg
 import pytest
 
 from flymirage_assets.definitions import build_definitions
+from flymirage_assets.executors import ray_environment
 from flymirage_assets.home import PROCESS_TAG, close_dead_runs, process_tags
 from flymirage_assets.report import SCENE_PRODUCTS
 from flymirage_core.settings import PlannerSettings, Settings
@@ -62,3 +63,13 @@ def test_runs_of_killed_processes_are_closed_and_others_left(tags: dict[str, str
         stored = instance.get_run_by_id(run.run_id)
         assert stored is not None
         assert (stored.status == dg.DagsterRunStatus.FAILURE) == bool(closed)
+
+
+def test_stages_on_ray_have_the_settings_of_this_process_and_none_of_its_secrets(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in ("PLANNER__MAX_SPEED", "PG_PASSWORD", "OPERATION__WEBHOOK_URL"):
+        monkeypatch.setenv(f"FLYMIRAGE_{name}", "1")
+    names = ray_environment()
+    assert {"DAGSTER_HOME", "FLYMIRAGE_PLANNER__MAX_SPEED"} <= set(names)
+    assert not {"FLYMIRAGE_PG_PASSWORD", "FLYMIRAGE_OPERATION__WEBHOOK_URL"} & set(names)
