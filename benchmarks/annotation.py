@@ -13,7 +13,6 @@ import argparse
 import importlib.util
 import json
 import math
-import resource
 import sys
 import time
 from collections.abc import Callable, Iterable, Sequence
@@ -52,6 +51,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "annotation"))
 
 MIN_TRUE_SIZE = 0.2  # metres: smaller true objects are not counted as missed
 PIXEL_STEP = 4  # every fourth pixel, both ways, is looked at
+SURFEL_SPACING = 0.04  # metres between the surfels over which a true object's colour is taken
 MIN_TRUE_PIXELS = 150  # over all views within d_th1 of its centre
 
 
@@ -66,6 +66,7 @@ class Scene:
     truth: Sequence[Any]  # boxes with centre, size, yaw; empty if unknown
     openings: Sequence[np.ndarray] = ()  # (2, 3) corners of windows and doors: boxes there are neither right nor wrong
     category: str = ""
+    surface_colour: Callable[[Any], str] = lambda thing: ""  # of a true object: `colour_of_surface`
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,7 @@ class Score:
     pairs: list[tuple[int, int, float]]  # truth, box, IoU
     recall: float
     precision: float
+    judged: int  # boxes that are right or wrong
     centre_error: float  # metres
 
 
@@ -118,6 +120,7 @@ def score(boxes: Sequence[Any], scene: Scene, counted: Sequence[bool], min_iou: 
         pairs,
         hits / max(sum(counted), 1),
         hits / max(len(boxes) - spare, 1),
+        len(boxes) - spare,
         float(np.mean(errors)) if errors else math.nan,
     )
 
@@ -166,18 +169,24 @@ def splat_scene(name: str, cloud: GaussianCloud, centre: np.ndarray, settings: S
 
 def generated(key: str, settings: Settings) -> Scene:
     from flymirage_core.scene.writer import OfflineSceneWriter
+
+    return described(OfflineSceneWriter().describe(key), settings)
+
+
+def described(description: Any, settings: Settings) -> Scene:
+    """The generated world of a scene description."""
     from flymirage_core.worldgen.assembly import build_truth
     from flymirage_core.worldgen.model import OfflineWorldModel
 
-    description = OfflineSceneWriter().describe(key)
     world = OfflineWorldModel(settings.generation).build(description)
     truth = build_truth(description)
     known = {
         "truth": truth.objects,
         "openings": [np.array(opening) for opening in truth.openings],
         "category": f"{description.category} / {description.subcategory}",
+        "surface_colour": lambda thing: colour_of_surface(thing, description.scene),
     }
-    return splat_scene(key, world.cloud, world.centre, settings, **known)
+    return splat_scene(description.scene, world.cloud, world.centre, settings, **known)
 
 
 def captured(path: str, settings: Settings) -> Scene:
@@ -211,27 +220,53 @@ def measured(scene: Scene, seen: Seen, second: BoxMap, settings: Settings) -> di
     for name, boxes in (("1", seen.first), ("2", second)):
         loose, strict = (score(boxes.boxes, scene, counted, iou) for iou in (0.25, 0.5))
         row |= {f"R25_{name}": loose.recall, f"P25_{name}": loose.precision, f"cm_{name}": 100 * loose.centre_error}
+        row[f"judged_{name}"] = loose.judged
         row |= {f"R50_{name}": strict.recall, f"P50_{name}": strict.precision}
     pairs = [(scene.truth[t], second.boxes[b]) for t, b, _ in score_boxes(second.boxes, scene.truth, 0.25)]
-    return row | names_and_colours([(t, b) for t, b in pairs if hasattr(t, "noun")])
+    return row | names_and_colours([(t, b) for t, b in pairs if hasattr(t, "noun")], scene.surface_colour)
 
 
-def names_and_colours(pairs: Sequence[tuple[Any, Any]]) -> dict[str, int]:
-    """Counts over matched (true object, box) pairs; a family's name is the last word of the true noun."""
+def names_and_colours(pairs: Sequence[tuple[Any, Any]], surface_colour: Callable[[Any], str]) -> dict[str, int]:
+    """Counts over matched (true object, box) pairs; a family's name is the last word of the true noun.
+
+    ``colour``: right by the colour of most of the thing's surface; ``paint``: by the paint that the generator names.
+    """
     right = sum(b.label == t.noun for t, b in pairs)
     family = sum(b.label != t.noun and b.label == t.noun.split()[-1] for t, b in pairs)
     generic = sum(b.label == UNKNOWN for _, b in pairs)
-    colours = sum(coloured(expected_colour(t.colour), b.colour) is not Truth.NO for t, b in pairs)
-    return {"matched": len(pairs), "noun": right, "family": family, "generic": generic, "colour": colours}
+    paint = sum(coloured(colour_of_paint(t.colour), b.colour) is not Truth.NO for t, b in pairs)
+    colour = sum(coloured(surface_colour(t), b.colour) is not Truth.NO for t, b in pairs)
+    counts = {"matched": len(pairs), "noun": right, "family": family, "generic": generic}
+    return counts | {"colour": colour, "paint": paint}
 
 
-def expected_colour(paint: str) -> str:
+def colour_of_paint(paint: str) -> str:
     """The basic name of a paint's own colour; `coloured` says whether the seen name may be used for it."""
     from flymirage_core.worldgen.colours import linear_rgb
 
-    linear = np.array(linear_rgb(paint))
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return colour_name(to_lab([255 * srgb])[0])
+    return _name_of_linear(np.array([linear_rgb(paint)]), np.ones(1))
+
+
+def colour_of_surface(thing: Any, scene: str) -> str:
+    """The basic name of a true object's colour in white light: the median over all of its surface, leaves and all.
+
+    A plant's paint is its pot's, a picture's its frame's; this is what one would say of the whole.
+    """
+    from flymirage_core.worldgen.assembly import object_parts
+    from flymirage_core.worldgen.surfaces import Surfels, surfels_of
+
+    surfels = Surfels.joined([surfels_of(part, SURFEL_SPACING) for part in object_parts(thing, scene)])
+    return _name_of_linear(surfels.albedo, surfels.areas)
+
+
+def _name_of_linear(linear: np.ndarray, areas: np.ndarray) -> str:
+    """The name of the median, by area (N,), of linear RGB colours (N, 3)."""
+    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0) ** (1 / 2.4) - 0.055)
+    lab = to_lab(255 * np.clip(srgb, 0, 1))
+    order = np.argsort(lab, axis=0)
+    share = np.cumsum(areas[order], axis=0) / areas.sum()  # (N, 3)
+    middle = (share < 0.5).sum(axis=0)
+    return colour_name(lab[order[middle, range(3)], range(3)])
 
 
 def prototype_figures(path: Path, scene: Scene, seen: Seen, settings: Settings) -> dict[str, float]:
@@ -284,11 +319,12 @@ def measure_worlds(arguments: argparse.Namespace, annotator: Annotator, settings
             continue
         scene = generated(key, settings)
         seen = see_both_passes(scene, annotator, settings)
+        forget_peak_memory()
         started = time.process_time()
         second = annotator.annotate(seen.all_views, settings.targets.near_distance)
         row = {"world": key, "category": scene.category, "s_1": seen.seconds, "s_2": time.process_time() - started}
+        row |= {"MB": peak_memory()}
         row |= measured(scene, seen, second, settings)
-        row["MB"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
         if arguments.prototype:
             row |= prototype_figures(arguments.prototype, scene, seen, settings)
         with arguments.results.open("a") as file:
@@ -296,33 +332,57 @@ def measure_worlds(arguments: argparse.Namespace, annotator: Annotator, settings
         print(key, {k: round(v, 2) if isinstance(v, float) else v for k, v in row.items()}, flush=True)
 
 
+def forget_peak_memory() -> None:
+    """Linux: what `peak_memory` says counts from here."""
+    Path("/proc/self/clear_refs").write_text("5")
+
+
+def peak_memory() -> float:
+    """Most MB of memory that this process held at once, the views of the world included."""
+    status = Path("/proc/self/status").read_text().split()
+    return int(status[status.index("VmHWM:") + 1]) / 1000
+
+
 COLUMNS = ("R25_1", "P25_1", "R50_1", "R25_2", "P25_2", "R50_2", "P50_2")
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:
-    """Markdown: a line a world, then the means; nouns and colours are shares of all matched boxes."""
-    head = ["world", "true", *COLUMNS, "cm", "noun", "colour", "s", "prototype s", "prototype R/P"]
-    lines = [head, ["---"] * len(head), *(_line(f"{r['category']}", [r]) for r in rows), _line("**all**", rows)]
+    """Markdown: a line a world, then means, medians and pooled figures (every object of all worlds counts the same)."""
+    head = ["world", "true", "boxes", *COLUMNS, "cm", "noun", "wrong", "colour/paint", "s", "MB", "prototype s", "R/P"]
+    lines = [head, ["---"] * len(head), *(_line(r["category"].split(" / ")[-1], [r], np.mean) for r in rows)]
+    lines += [_line("**mean**", rows, np.mean), _line("**median**", rows, np.median)]
+    pooled = [{**r, **{c: _pooled(rows, c) for c in COLUMNS}} for r in rows]
+    lines.append(_line("**pooled**", pooled, np.mean))
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def _line(name: str, rows: Sequence[dict[str, Any]]) -> list[str]:
-    def mean(key: str) -> float:
-        return float(np.mean([r[key] for r in rows if key in r] or [math.nan]))
+def _pooled(rows: Sequence[dict[str, Any]], column: str) -> float:
+    """A share over all worlds together: recalls over true objects, precisions over boxes."""
+    weights = [r["true" if column.startswith("R") else f"judged_{column[-1]}"] for r in rows]
+    return float(np.average([r[column] for r in rows], weights=weights)) if sum(weights) else math.nan
+
+
+def _line(name: str, rows: Sequence[dict[str, Any]], middle: Callable[[Any], Any]) -> list[str]:
+    def of(key: str) -> float:
+        return float(middle([r[key] for r in rows if key in r] or [math.nan]))
 
     matched = max(sum(r["matched"] for r in rows), 1)
     named = sum(r["noun"] + r["family"] for r in rows) / matched
-    colour = sum(r["colour"] for r in rows) / matched
+    wrong = 1 - named - sum(r["generic"] for r in rows) / matched
+    colours = "/".join(f"{sum(r[key] for r in rows) / matched:.2f}" for key in ("colour", "paint"))
     return [
         name,
         str(sum(r["true"] for r in rows)),
-        *(f"{mean(c):.2f}" for c in COLUMNS),
-        f"{mean('cm_2'):.1f}",
+        str(sum(r["boxes"] for r in rows)),
+        *(f"{of(c):.2f}" for c in COLUMNS),
+        f"{of('cm_2'):.1f}",
         f"{named:.2f}",
-        f"{colour:.2f}",
-        f"{mean('s_1') + mean('s_2'):.1f}",
-        f"{mean('prototype_s'):.1f}",
-        f"{mean('prototype_R25'):.2f}/{mean('prototype_P25'):.2f}",
+        f"{wrong:.2f}",
+        colours,
+        f"{of('s_1'):.0f} + {of('s_2'):.0f}",
+        f"{of('MB'):.0f}",
+        f"{of('prototype_s'):.0f}",
+        f"{of('prototype_R25'):.2f}/{of('prototype_P25'):.2f}",
     ]
 
 

@@ -1,6 +1,7 @@
 """Train the recogniser of flymirage_core/annotation on renders of generated worlds; no label is made by hand.
 
     python benchmarks/train_recogniser.py collect --data FOLDER train-0 train-1 ...   # one file a world, resumable
+    python benchmarks/train_recogniser.py showrooms --data FOLDER --count 6           # of nouns with few examples
     python benchmarks/train_recogniser.py train --data FOLDER                         # recogniser.npz, RECOGNISER.md
 
 What is learned from is what the annotator makes of the rendered views: its own boxes, partial and displaced as they
@@ -16,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from annotation import generated, in_opening, score_boxes, see_both_passes
+from annotation import Scene, described, generated, in_opening, score_boxes, see_both_passes
 from torch import nn
 
 from flymirage_core.annotation.appearance import FEATURES, mirrored, reversed_depth
@@ -24,6 +25,11 @@ from flymirage_core.annotation.embedded import EmbeddedAnnotator
 from flymirage_core.annotation.fused_points import frames_of
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.recogniser import CLIP, Recogniser, recogniser_of
+from flymirage_core.scene.description import SceneDescription
+from flymirage_core.scene.design import PlannedObject
+from flymirage_core.scene.keys import rng
+from flymirage_core.scene.knowledge import nouns
+from flymirage_core.scene.writer import OfflineSceneWriter
 from flymirage_core.settings import Settings
 
 HOME = Path(__file__).parents[1] / "flymirage_core" / "annotation"
@@ -34,6 +40,8 @@ STEPS = 1200
 BATCH = 256
 HIDDEN = (128, 96)
 NOISE = 0.1  # standard deviations, on every feature
+SHOWN, SHOWN_LARGE = 26, 10  # nouns in a showroom: in a hall, in a yard
+LARGEST_IN_HALL = 2.8  # metres
 LEFT_OVER = ""  # the noun of a box that is no object of its own
 WANTED = {"noun": 0.93, "family": 0.90, "material": 0.85}  # of what is said on held-out worlds, so much must be right
 LEAST = 0.45  # probability; there are nouns that it never saw, which calibration knows too few of
@@ -66,24 +74,68 @@ class Examples:
 
 def collect(keys: Iterable[str], folder: Path, settings: Settings) -> None:
     folder.mkdir(parents=True, exist_ok=True)
-    annotator = EmbeddedAnnotator(settings.annotation)
     for key in keys:
-        if (folder / f"{key}.npz").exists():
-            continue
-        scene = generated(key, settings)
-        views = see_both_passes(scene, annotator, settings).all_views
-        found = [thing for thing, _ in annotator.observations(frames_of(views), settings.targets.near_distance)]
-        boxes = [thing.box for thing in found]
-        matches = {b: scene.truth[t] for t, b, _ in score_boxes(boxes, scene.truth, 0.25)}
-        nouns = [matches[b].noun if b in matches else opening_noun(box, scene.openings) for b, box in enumerate(boxes)]
-        materials = [kind_of_material(matches[b].material) if b in matches else "" for b in range(len(boxes))]
-        np.savez_compressed(
-            folder / f"{key}.npz",
-            features=np.stack([thing.features for thing in found]),
-            nouns=np.array(nouns),
-            materials=np.array(materials),
-        )
-        print(f"{key}: {len(boxes)} boxes, {len(matches)} matched", flush=True)
+        if not (folder / f"{key}.npz").exists():
+            collect_world(generated(key, settings), folder, settings)
+
+
+def collect_showrooms(count: int, folder: Path, settings: Settings) -> None:
+    """Places that hold two pieces each of the nouns that ``folder`` has the fewest examples of."""
+    for number in range(count):
+        key = f"showroom-{number}"
+        if not (folder / f"{key}.npz").exists():
+            found = Counter(load(folder).nouns.tolist())
+            wanted = sorted(nouns(), key=lambda noun: (found[noun], rng(key, noun).random()))
+            collect_world(described(showroom(key, wanted), settings), folder, settings)
+
+
+def showroom(key: str, wanted: Sequence[str]) -> SceneDescription:
+    """A hall with the first of the ``wanted`` nouns that fit in; a yard if the very first is too large for that."""
+    generator = rng(key, "showroom")
+    outside = max(nouns()[wanted[0]].size) > LARGEST_IN_HALL
+    place = ("industrial and utility facilities", "construction site" if outside else "packing hall")
+    base = OfflineSceneWriter().describe(key, place)
+    zone = base.zones[0]
+    fitting = [n for n in wanted if (max(nouns()[n].size) > LARGEST_IN_HALL) == outside]
+    shown = fitting[: SHOWN_LARGE if outside else SHOWN]
+    objects = []
+    for noun in ["workbench", "workbench", *shown]:
+        kind = nouns()[noun]
+        material = str(generator.choice(list(kind.finishes)))
+        where = [p for p in kind.placements if p in ("against_wall", "on_floor", "on_surface", "on_wall", "hanging")]
+        placement = where[0] if where else "on_floor"
+        objects += [
+            PlannedObject(
+                noun=noun,
+                count=1,
+                colour=str(generator.choice(kind.finishes[material])),
+                material=material,
+                size=size,
+                placement=placement,
+                relative_to="workbench" if placement == "on_surface" else "",
+                zone=zone.name,
+            )
+            for size in ("small", "large")
+        ]
+    return base.model_copy(update={"objects": tuple(objects)})
+
+
+def collect_world(scene: Scene, folder: Path, settings: Settings) -> None:
+    """One file: features, nouns and materials of the boxes that the annotator makes of a world."""
+    annotator = EmbeddedAnnotator(settings.annotation)
+    views = see_both_passes(scene, annotator, settings).all_views
+    found = [thing for thing, _ in annotator.observations(frames_of(views), settings.targets.near_distance)]
+    boxes = [thing.box for thing in found]
+    matches = {b: scene.truth[t] for t, b, _ in score_boxes(boxes, scene.truth, 0.25)}
+    nouns = [matches[b].noun if b in matches else opening_noun(box, scene.openings) for b, box in enumerate(boxes)]
+    materials = [kind_of_material(matches[b].material) if b in matches else "" for b in range(len(boxes))]
+    np.savez_compressed(
+        folder / f"{scene.name}.npz",
+        features=np.stack([thing.features for thing in found]),
+        nouns=np.array(nouns),
+        materials=np.array(materials),
+    )
+    print(f"{scene.name}: {len(boxes)} boxes, {len(matches)} matched", flush=True)
 
 
 def opening_noun(box: object, openings: Sequence[np.ndarray]) -> str:
@@ -259,14 +311,18 @@ Most frequent mistakes (true -> said): {"; ".join(f"{t} -> {s} ({n})" for (t, s)
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
-    for name in ("collect", "train"):
+    for name in ("collect", "showrooms", "train"):
         commands.add_parser(name).add_argument("--data", type=Path, required=True)
     commands.choices["collect"].add_argument("worlds", nargs="+")
+    commands.choices["showrooms"].add_argument("--count", type=int, default=6)
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     torch.use_deterministic_algorithms(True)
     if arguments.command == "collect":
         collect(arguments.worlds, arguments.data, Settings())
+        return
+    if arguments.command == "showrooms":
+        collect_showrooms(arguments.count, arguments.data, Settings())
         return
     examples = load(arguments.data)
     order = {world: i for i, world in enumerate(sorted(set(examples.worlds.tolist())))}
