@@ -132,7 +132,8 @@ class EmbeddedAnnotator:
         square = fuse_points([square_only(frame) for frame in frames[::step]], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
         if sees_sky(frames[::step]):
-            return find_open_air(cloud.points, normals, square.points)
+            eyes = np.array([frame.camera.position for frame in frames])
+            return find_open_air(cloud.points, normals, square.points, eyes)
         return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL)
 
 

@@ -59,6 +59,8 @@ MAX_POLE_GAP: Final = 1.1
 """Metres between a foot on the floor and a shade whose pole was lost."""
 MAX_TABLE_POLE_GAP: Final = 0.25
 """The same on a table."""
+MAX_CANOPY_GAP: Final = 0.5
+"""The same under a canopy that is much wider than its pole."""
 POLE_SLANT: Final = 0.12
 """Metres between the middles of foot and shade."""
 MAX_LAMP_SIDE: Final = 0.75
@@ -111,7 +113,7 @@ def _join_touching(parts: PartSet) -> bool:
         if (
             _same_thing(a, b, step, contact, stands and step > IDENTICAL_COLOUR)
             or _piece_inside(a, b, stands, upper)
-            or (not stands and (_stacked(lower, upper) or _held_up(lower, upper)))
+            or (not stands and (_stacked(lower, upper) or _held_up(lower, upper, NEAR)))
         ):
             parts.join(i, j)
             changed = True
@@ -158,9 +160,9 @@ def _stacked(lower: Part, upper: Part) -> bool:
     return bool(overhung and b.share_inside(lower.points, NEAR) > NEARLY_ALL)
 
 
-def _held_up(pole: Part, canopy: Part) -> bool:
-    """A parasol's cloth or a tree's crown round the upper end of what carries it."""
-    if pole.clearance > FOOT_CLEARANCE or canopy.clearance < CANOPY_CLEARANCE or pole.upper[2] < canopy.lower[2] - NEAR:
+def _held_up(pole: Part, canopy: Part, gap: float) -> bool:
+    """A parasol's cloth or a tree's crown round the upper end of its pole, of which ``gap`` metres may be lost."""
+    if pole.clearance > FOOT_CLEARANCE or canopy.clearance < CANOPY_CLEARANCE or pole.upper[2] < canopy.lower[2] - gap:
         return False
     a, b = pole.footprint, canopy.footprint
     centred = np.linalg.norm(a.centre - b.centre) < CENTRED * b.size.max() + NEAR
@@ -174,8 +176,12 @@ def _join_lost_poles(parts: PartSet) -> None:
         for j in order[n + 1 :]:
             if i not in parts.parts:
                 break
-            if j in parts.parts and _foot_and_shade(parts.parts[i], parts.parts[j]) and not _between(parts, i, j):
+            if j in parts.parts and _one_stand(parts.parts[i], parts.parts[j]) and not _between(parts, i, j):
                 i = parts.join(i, j)
+
+
+def _one_stand(lower: Part, upper: Part) -> bool:
+    return _foot_and_shade(lower, upper) or (lower.thing == upper.thing and _held_up(lower, upper, MAX_CANOPY_GAP))
 
 
 def _foot_and_shade(foot: Part, shade: Part) -> bool:

@@ -58,11 +58,8 @@ MIN_LENGTH: Final = 4.5
 """Metres; shorter faces may be those of objects."""
 MIN_SEEN: Final = 0.5
 """Share of a face's columns that are seen; rows of stalls have gaps, and posts above their counters."""
-CLOSE_BEHIND: Final = 1.2
-"""Metres behind a house front in which window panes, reveals and what shows through them lie."""
-FAR_BEHIND: Final = 8.0
-MAX_BEHIND: Final = 0.3
-"""Points between `CLOSE_BEHIND` and `FAR_BEHIND` behind a face, as a share of its own, up to which nothing is there."""
+BEHIND: Final = 0.3
+"""Metres behind a face from which a camera was behind it."""
 GROUND_CLEARANCE: Final = 0.09
 """Metres; large places have large splats, whose ground is uneven."""
 
@@ -84,14 +81,18 @@ def sees_sky(frames: Sequence[Frame]) -> bool:
     return sky > MIN_SKY * cover
 
 
-def find_open_air(points: Float32, normals: Float32, square: Float32) -> RoomStructure:
-    """Ground, yaw and what closes the place; arguments as of `find_structure`."""
+def find_open_air(points: Float32, normals: Float32, square: Float32, eyes: Float64) -> RoomStructure:
+    """Ground, yaw and what closes the place; arguments as of `find_structure`.
+
+    ``eyes``: (E, 3) where the cameras were. Behind a face that none of them was behind, all is out of reach: rooms that
+    show through windows, the town beyond a fence.
+    """
     floor = floor_height(points, normals)
     upright = (np.abs(normals[:, 2]) < VERTICAL) & (normals != 0).any(axis=1)
     yaw = room_yaw(points[upright], normals[upright])
     walls = [w for k in range(4) for w in _faces(points, normals, upright, yaw + k * np.pi / 2, floor)]
     yaw, walls = aligned(points, normals, upright, yaw, walls)
-    walls = [with_back(wall, square) for wall in walls]
+    walls = [_closing(with_back(wall, square), eyes) for wall in walls]
     relief = floor_relief(points, normals, floor)
     return RoomStructure(floor, None, float(yaw % (np.pi / 2)), tuple(walls), relief, None, GROUND_CLEARANCE)
 
@@ -113,9 +114,8 @@ def _faces(points: Float32, normals: Float32, upright: Bool, azimuth: float, flo
         offset = float((edges[j] + edges[j + 1]) / 2)
         on = facing & (np.abs(offsets - offset) < FACE_DEPTH)
         offset = float(np.median(offsets[on]))
-        for start, end in _stretches(along[on], points[on, 2] - floor):
-            wall = Wall(normal, offset, start, end, offset)
-            walls.append(replace(wall, thickness=CLOSE_BEHIND) if _hides_all(wall, points, floor) else wall)
+        stretches = _stretches(along[on], points[on, 2] - floor)
+        walls += [Wall(normal, offset, start, end, offset) for start, end in stretches]
     return walls
 
 
@@ -137,9 +137,8 @@ def _stretches(along: Float32, heights: Float32) -> list[tuple[float, float]]:
     return found
 
 
-def _hides_all(wall: Wall, points: Float32, floor: float) -> bool:
-    """Whether next to nothing is seen behind a face: then it is a house's, and what shows close behind is the house."""
-    along, distance, heights = points[:, :2] @ wall.direction, wall.distance(points), points[:, 2] - floor
-    before = (along > wall.start) & (along < wall.end) & (heights > FOOT) & (heights < COLUMN_HEIGHT)
-    behind = before & (distance < -CLOSE_BEHIND) & (distance > -FAR_BEHIND)
-    return bool(behind.sum() < MAX_BEHIND * (before & (np.abs(distance) < FACE_DEPTH)).sum())
+def _closing(wall: Wall, eyes: Float64) -> Wall:
+    """The wall, without an end behind if no camera was there."""
+    along = eyes[:, :2] @ wall.direction
+    behind = (wall.distance(eyes) < -BEHIND) & (along > wall.start) & (along < wall.end)
+    return wall if behind.any() else replace(wall, thickness=np.inf)
