@@ -107,7 +107,7 @@ def _faces(points: Float32, normals: Float32, upright: Bool, azimuth: float, flo
     offsets, along = points[:, :2] @ normal, points[:, :2] @ direction  # (N,)
     mine = offsets[facing]
     counts, edges = np.histogram(mine, np.arange(mine.min() - 2 * WALL_BIN, mine.max() + 3 * WALL_BIN, WALL_BIN))
-    counts = np.convolve(counts, [1, 1, 1], "same")
+    counts = np.convolve(counts, [1, 1, 1], "same") - 1e-6 * np.arange(len(counts))  # of equal ones the first
     peaks = (counts >= ndimage.maximum_filter1d(counts, PEAK_WINDOW)) & (counts > MIN_FACE_POINTS)
     walls = []
     for j in np.flatnonzero(peaks):

@@ -41,6 +41,8 @@ MIN_HEIGHT: Final = 0.25
 """Metres above the floor; lower down it is a skirting board, or the colour of furniture on the wall behind it."""
 MIN_TALL: Final = 1.6
 """... unless it is as high as a door."""
+MAX_BOTTOM_OUTDOORS: Final = 2.6
+"""Metres above the ground; farther up on house fronts are windows."""
 MIN_THICKNESS: Final = 0.03
 
 
@@ -54,6 +56,8 @@ def wall_objects(points: Float32, colours: Float32, structure: RoomStructure) ->
         members = np.flatnonzero(wall.contains(points) & (np.abs(wall.distance(points)) < MAX_DEPTH))
         if len(members) >= MIN_POINTS:
             found += _on_wall(wall, members, points[members], colours[members], structure.floor)
+    if structure.ceiling_map is None:
+        return [box for box in found if box.bottom - structure.floor < MAX_BOTTOM_OUTDOORS]
     return found
 
 
