@@ -45,7 +45,15 @@ def columns_of(asset: str) -> dg.TableSchema:
 
 
 def _table(schema: pa.Schema) -> dict[str, str]:
-    return {field.name: str(field.type) for field in schema}
+    return {field.name: _short(field.type) for field in schema}
+
+
+def _short(kind: pa.DataType) -> str:
+    """
+    >>> _short(pa.list_(pa.float64(), 3)), _short(pa.int32())
+    ('double[3]', 'int32')
+    """
+    return f"{kind.value_type}[{kind.list_size}]" if pa.types.is_fixed_size_list(kind) else str(kind)
 
 
 _VIEW = {"rgb": "uint8 (H, W, 3)", "depth": "uint16 (H, W), mm", "alpha": "uint8 (H, W)", "camera": "K, T_world_camera"}
