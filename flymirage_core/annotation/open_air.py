@@ -128,7 +128,7 @@ def _stretches(along: Float32, heights: Float32) -> list[tuple[float, float]]:
     inside = (row >= 0) & (row < filled.shape[1])
     filled[((along[inside] - origin) / MAP_CELL).astype(int), row[inside]] = True
     tall = (filled.sum(axis=1) >= MIN_FILLED) & filled[:, int((BREAST - FOOT) / MAP_CELL) :].any(axis=1)
-    numbers, count = ndimage.label(ndimage.binary_closing(tall, np.ones(int(MAX_GAP / MAP_CELL))))
+    numbers, count = ndimage.label(ndimage.binary_closing(tall, np.ones(int(MAX_GAP / MAP_CELL), bool)))
     found = []
     for k in range(1, count + 1):
         run = np.flatnonzero(numbers == k)
