@@ -1,10 +1,11 @@
 """The verdict's gates on labelled damage: thresholds from one half of the scenes, rates and ROC on the other.
 
-    python benchmarks/quality.py STORE [--flights 8] [--sheet FOLDER]
+    python benchmarks/quality.py STORE... [--flights 4] [--seed 0] [--table FILE] [--sheet FOLDER]
 
-STORE holds finished scenes (`flymirage grow`, `flymirage import`). Good flights are damaged in each of the ways of
-`quality_damage.py`; scenes alternate between the halves. Prints, for each damage, the gate that is there for it: its
-area under the ROC curve, its false drops and false keeps at the settings' threshold; then the whole verdict's.
+Each STORE holds finished scenes (`flymirage grow`, `flymirage import`). Good flights are damaged in each of the ways of
+`quality_damage.py`. ``--seed`` says which half of the scenes sets the thresholds, by one rule for all gates
+(`suggested`); on the other half stand, for each damage, the area under the ROC curve of its gate and of the verdict,
+and how many are found and wrongly kept, with those thresholds and with the settings'. Then the same over 20 splits.
 """
 
 import argparse
@@ -12,17 +13,19 @@ import json
 import sys
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
 from quality_damage import DAMAGES, Case
 
 from flymirage_core.annotation.boxes import BoxMap
-from flymirage_core.language.evidence import Evidence
+from flymirage_core.language.evidence import Evidence, scene_openings
 from flymirage_core.language.judge import MeasuredJudge
 from flymirage_core.language.settings import VerdictSettings
-from flymirage_core.language.verdicts import QualityVerdicts
+from flymirage_core.language.verdicts import GateResult, QualityVerdicts
 from flymirage_core.navigation.trajectories import Trajectories
 from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.rendering.frames import Frames
@@ -42,22 +45,17 @@ GATES = {
 }
 """What is there to find each damage."""
 LOW_IS_BAD = ("alpha_coverage", "contrast", "darkness", "target_visible", "target_size", "progress", "clearance")
+SPLITS = 20
 JUDGE = MeasuredJudge(VerdictSettings())
-SETTING = {"darkness": "min_brightness", "glare": "max_brightness", "final_view": "max_final_angle_deg"}
-SETTING |= {"feasibility": "max_limit_ratio", "arrival": "max_end_error", "hovering": "max_hover"}
-SETTING |= {"target_size": "min_target_share", "target_visible": "min_target_visible"}
-THRESHOLDS = {
-    gate: float(getattr(JUDGE.settings, name))
-    for field in type(JUDGE.settings).model_fields
-    for gate, name in [(field.partition("_")[2], field)]
-} | {gate: float(getattr(JUDGE.settings, name)) for gate, name in SETTING.items()}
-Row = dict[str, object]
+Row = dict[str, Any]
+Thresholds = dict[str, float]
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("store", type=Path)
-    parser.add_argument("--flights", type=int, default=8)
+    parser.add_argument("stores", type=Path, nargs="+")
+    parser.add_argument("--flights", type=int, default=4)
+    parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--sheet", type=Path)
     parser.add_argument(
         "--table",
@@ -68,17 +66,18 @@ def main() -> None:
     options = parser.parse_args()
     rows = [json.loads(line) for line in options.table.read_text().splitlines()] if options.table.exists() else []
     done = {row["scene"] for row in rows}
-    scenes = sorted(path.name for path in (options.store / "products" / "quality_verdict").iterdir())
-    for number, scene in enumerate(scenes):
-        if scene not in done:
-            fresh = list(measured(options.store, scene, number % 2, options.flights, options.sheet))
+    for store in options.stores:
+        for scene in sorted(path.name for path in (store / "products" / "quality_verdict").iterdir()):
+            if f"{store.parent.name}/{scene}" in done:
+                continue
+            fresh = list(measured(store, scene, options.flights, options.sheet))
             rows += fresh
             with options.table.open("a") as table:
                 table.writelines(json.dumps(row) + "\n" for row in fresh)
-    report(rows)
+    report(rows, options.seed)
 
 
-def measured(store: Path, scene: str, half: int, flights: int, sheet: Path | None) -> Iterator[Row]:
+def measured(store: Path, scene: str, flights: int, sheet: Path | None) -> Iterator[Row]:
     """Every gate's value on good flights and on each damage of them."""
     begun = time.process_time()
     for case, flight_id in cases(store, scene, flights):
@@ -89,13 +88,22 @@ def measured(store: Path, scene: str, half: int, flights: int, sheet: Path | Non
             if sheet:
                 _picture(sheet / f"{scene}-{flight_id}-{damage}.jpg", evidence)
             yield {
-                "scene": scene,
-                "half": half,
+                "scene": f"{store.parent.name}/{scene}",
                 "flight": flight_id,
                 "damage": damage,
-                "values": {g.gate: g.value for g in results},
+                "values": {g.gate: in_a_closed_scene(g) for g in results},
+                "thresholds": {g.gate: in_a_closed_scene(replace(g, value=g.threshold)) for g in results},
             }
     sys.stderr.write(f"{scene}: {time.process_time() - begun:.0f} s CPU\n")
+
+
+def in_a_closed_scene(result: GateResult) -> float:
+    """The value that in a scene without openings of its own lies as far beyond the threshold."""
+    if result.gate == "hole":
+        return result.value * JUDGE.settings.max_hole[0] / result.threshold
+    if result.gate == "alpha_coverage":
+        return 1 - (1 - result.value) * JUDGE.settings.max_empty[0] / (1 - result.threshold)
+    return result.value
 
 
 def cases(store: Path, scene: str, count: int) -> Iterator[tuple[Case, int]]:
@@ -104,11 +112,11 @@ def cases(store: Path, scene: str, count: int) -> Iterator[tuple[Case, int]]:
     frames, world = Frames.load(folder(store, "frames", scene)), World.load(folder(store, "world", scene))
     kept = QualityVerdicts.load(folder(store, "quality_verdict", scene)).kept
     chosen = [f for f in flights if f.flight_id in kept]
+    openings = scene_openings(frames)
     for i in np.unique(np.linspace(0, len(chosen) - 1, count).astype(int)).tolist():
         flight = chosen[i]
-        evidence = Evidence.of(
-            flight, boxes.by_id(flight.object_id), frames.flight(flight.flight_id), JUDGE.settings.frame_step
-        )
+        target, filmed = boxes.by_id(flight.object_id), frames.flight(flight.flight_id)
+        evidence = Evidence.of(flight, target, filmed, JUDGE.settings.frame_step, openings)
         yield Case(evidence, world.cloud, boxes, CpuRasterizer(0)), flight.flight_id
 
 
@@ -117,60 +125,77 @@ def folder(store: Path, asset: str, scene: str) -> Path:
     return at / str(json.loads((at / "product.json").read_text())["digest"])
 
 
-def report(rows: list[Row]) -> None:
-    """Thresholds that the first half suggests, then rates and areas on the second."""
-    first, second = ([r for r in rows if r["half"] == half] for half in (0, 1))
-    good = [r for r in first if r["damage"] == "none"]
-    print(f"{len({r['scene'] for r in rows})} scenes; good flights: {len(good)} to calibrate, {count(second)} to test")
-    print("\ngate             good 1%..99% (first half)        threshold  suggested   damage: 5%..95%")
+def report(rows: list[Row], seed: int) -> None:
+    """One split in full, then what the verdict does over many."""
+    first, second = halves(rows, seed)
+    good, clean = of_damage(first, "none"), of_damage(second, "none")
+    set_here, found = rows[0]["thresholds"], calibrated(first)
+    print(f"seed {seed}: {len(scenes_of(first))} scenes calibrate ({len(good)} good flights): {scenes_of(first)}")
+    print(f"{len(scenes_of(second))} scenes test ({len(clean)} good flights)\n")
+    print("gate              good 1%..99%               settings  calibrated   damage: 5%..95%")
     for damage, gates in GATES.items():
         for gate in gates:
-            hurt = [r for r in first if r["damage"] == damage]
-            print(spread_line(gate, values(good, gate), damage, values(hurt, gate)))
-    print("\nsecond half      gate AUC  finds    verdict AUC  false keep")
-    clean = [r for r in second if r["damage"] == "none"]
-    usual = {gate: float(np.median(values(good, gate))) for gate in good[0]["values"]}
-    calm = [score(r, usual) for r in clean]
-    everything: list[float] = []
-    for damage, gates in GATES.items():
-        hurt = [r for r in second if r["damage"] == damage]
-        scores = [score(r, usual) for r in hurt]
-        everything += scores
-        best = max(auc(badness(clean, g), badness(hurt, g)) for g in gates)
-        finds = np.mean([bool(set(gates) & set(failed(r))) for r in hurt])
-        kept = np.mean([not failed(r) for r in hurt])
-        print(f"{damage:15s}  {best:8.3f}  {finds:5.1%}    {auc(calm, scores):11.3f}  {kept:10.1%}")
-    hurt = [r for r in second if r["damage"] != "none"]
-    dropped, missed = [r for r in clean if failed(r)], [r for r in hurt if not failed(r)]
-    print(f"\nverdict in all: AUC {auc(calm, everything):.3f}")
-    print(f"false drop {len(dropped) / len(clean):.1%} of {len(clean)}, ", end="")
-    print(f"false keep {len(missed) / len(hurt):.1%} of {len(hurt)}")
-    print("false drops:", {f"{r['scene']}/{r['flight']}": failed(r) for r in dropped})
+            low, high = np.percentile(values(good, gate), [1, 99])
+            a, b = np.percentile(values(of_damage(first, damage), gate), [5, 95])
+            thresholds = f"{set_here[gate]:9.3f} {found[gate]:9.3f}"
+            print(f"{gate:15s} {low:9.3f} .. {high:9.3f}  {thresholds}   {damage}: {a:.3f} .. {b:.3f}")
+    for name, thresholds in (("calibrated", found), ("settings'", set_here)):
+        print(f"\nother half, {name} thresholds\ndamage          gate AUC   finds  verdict AUC  false keep")
+        usual = calm_values(good)
+        for damage in GATES:
+            hurt = of_damage(second, damage)
+            best, finds = gate_figures(clean, hurt, damage, thresholds)
+            area, kept = verdict_figures(clean, hurt, usual, thresholds)
+            print(f"{damage:15s} {best:8.3f}  {finds:6.1%}  {area:11.3f}  {kept:10.1%}")
+        area, kept = verdict_figures(clean, [r for r in second if r["damage"] != "none"], usual, thresholds)
+        dropped = {f"{r['scene']}/{r['flight']}": failed(r, thresholds) for r in clean if failed(r, thresholds)}
+        print(f"in all: AUC {area:.3f}, false keep {kept:.1%}, false drop {len(dropped) / len(clean):.1%} {dropped}")
+    many_splits(rows)
 
 
-def failed(row: Row) -> list[str]:
-    """Gates that the settings' thresholds let the flight fail."""
-    return [gate for gate, value in row["values"].items() if excess(gate, value, THRESHOLDS[gate]) > 0]
+def many_splits(rows: list[Row]) -> None:
+    """AUC and rates on the half that did not set the thresholds: mean, least and most over the splits."""
+    table: dict[str, list[float]] = {}
+    for seed in range(SPLITS):
+        first, second = halves(rows, seed)
+        clean, usual, thresholds = of_damage(second, "none"), calm_values(of_damage(first, "none")), calibrated(first)
+        table.setdefault("false drop", []).append(float(np.mean([bool(failed(r, thresholds)) for r in clean])))
+        for damage in (*GATES, "all"):
+            hurt = [r for r in second if r["damage"] == damage or (damage == "all" and r["damage"] != "none")]
+            if damage != "all":
+                table.setdefault(f"{damage}: gate AUC", []).append(gate_figures(clean, hurt, damage, thresholds)[0])
+            area, kept = verdict_figures(clean, hurt, usual, thresholds)
+            table.setdefault(f"{damage}: verdict AUC", []).append(area)
+            table.setdefault(f"{damage}: false keep", []).append(kept)
+    print(f"\nover {SPLITS} splits, thresholds always from the other half: mean (least .. most)")
+    for name, figures in table.items():
+        print(f"{name:28s} {np.mean(figures):.3f} ({min(figures):.3f} .. {max(figures):.3f})")
 
 
-def count(rows: list[Row]) -> int:
-    return sum(r["damage"] == "none" for r in rows)
+def halves(rows: list[Row], seed: int) -> tuple[list[Row], list[Row]]:
+    """Rows of the scenes that calibrate, and of those that test."""
+    scenes = scenes_of(rows)
+    chosen = {scenes[i] for i in rng("benchmark", "quality", seed).permutation(len(scenes))[: len(scenes) // 2]}
+    return [r for r in rows if r["scene"] in chosen], [r for r in rows if r["scene"] not in chosen]
 
 
-def values(rows: list[Row], gate: str) -> np.ndarray:
-    return np.array([r["values"][gate] for r in rows], float)
+def scenes_of(rows: list[Row]) -> list[str]:
+    return sorted({r["scene"] for r in rows})
 
 
-def badness(rows: list[Row], gate: str) -> np.ndarray:
-    """The gate's values, greater is worse."""
-    return -values(rows, gate) if gate in LOW_IS_BAD else values(rows, gate)
+def of_damage(rows: list[Row], damage: str) -> list[Row]:
+    return [r for r in rows if r["damage"] == damage]
 
 
-def spread_line(gate: str, good: np.ndarray, damage: str, hurt: np.ndarray) -> str:
-    low, high = np.percentile(good, [1, 99])
-    a, b = np.percentile(hurt, [5, 95])
-    calibrated = f"{THRESHOLDS[gate]:9.3f}  {suggested(gate, good, hurt):9.3f}"
-    return f"{gate:15s}  {low:9.3f} .. {high:9.3f}   {calibrated}   {damage}: {a:.3f} .. {b:.3f}"
+def calibrated(rows: list[Row]) -> Thresholds:
+    """The settings' thresholds; those of gates that are there for a damage as these rows suggest."""
+    good = of_damage(rows, "none")
+    found = {
+        gate: suggested(gate, values(good, gate), values(of_damage(rows, damage), gate))
+        for damage, gates in GATES.items()
+        for gate in gates
+    }
+    return rows[0]["thresholds"] | found
 
 
 def suggested(gate: str, good: np.ndarray, hurt: np.ndarray) -> float:
@@ -184,17 +209,50 @@ def suggested(gate: str, good: np.ndarray, hurt: np.ndarray) -> float:
     return float(sign * best[len(best) // 2])
 
 
-def score(row: Row, calm: dict[str, float]) -> float:
+def gate_figures(clean: list[Row], hurt: list[Row], damage: str, thresholds: Thresholds) -> tuple[float, float]:
+    """The best area under the curve of the gates that are there for the damage, and the share that they find."""
+    gates = GATES[damage]
+    area = max(auc(badness(clean, g), badness(hurt, g)) for g in gates)
+    return area, float(np.mean([bool(set(gates) & set(failed(r, thresholds))) for r in hurt]))
+
+
+def verdict_figures(
+    clean: list[Row], hurt: list[Row], usual: dict[str, float], thresholds: Thresholds
+) -> tuple[float, float]:
+    """The verdict's area under the curve, and the share of damaged flights that it keeps."""
+    area = auc(*([score(r, usual, thresholds) for r in rows] for rows in (clean, hurt)))
+    return area, float(np.mean([not failed(r, thresholds) for r in hurt]))
+
+
+def failed(row: Row, thresholds: Thresholds) -> list[str]:
+    """Gates that the flight fails."""
+    return [g for g, v in row["values"].items() if excess(g, v, thresholds[g], thresholds[g]) > 0]
+
+
+def values(rows: list[Row], gate: str) -> np.ndarray:
+    return np.array([r["values"][gate] for r in rows], float)
+
+
+def calm_values(good: list[Row]) -> dict[str, float]:
+    return {gate: float(np.median(values(good, gate))) for gate in good[0]["values"]}
+
+
+def badness(rows: list[Row], gate: str) -> np.ndarray:
+    """The gate's values, greater is worse."""
+    return -values(rows, gate) if gate in LOW_IS_BAD else values(rows, gate)
+
+
+def score(row: Row, usual: dict[str, float], thresholds: Thresholds) -> float:
     """A verdict as one number: how far its worst gate lies beyond the threshold; -1 at good flights' median."""
-    return max(excess(gate, value, calm[gate]) for gate, value in row["values"].items())
+    return max(excess(gate, value, thresholds[gate], usual[gate]) for gate, value in row["values"].items())
 
 
-def excess(gate: str, value: float, calm: float) -> float:
+def excess(gate: str, value: float, threshold: float, calm: float) -> float:
     """How far a gate's value lies beyond its threshold, in distances of ``calm``, the usual value, from it."""
     if not np.isfinite(value):
         return float("inf")
     sign = -1.0 if gate in LOW_IS_BAD else 1.0
-    return sign * (value - THRESHOLDS[gate]) / max(sign * (THRESHOLDS[gate] - calm), 1e-9)
+    return sign * (value - threshold) / max(sign * (threshold - calm), 1e-9)
 
 
 def auc(good: "np.ndarray | list[float]", hurt: "np.ndarray | list[float]") -> float:

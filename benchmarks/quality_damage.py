@@ -19,6 +19,10 @@ from flymirage_core.splats.cloud import GaussianCloud
 SH_DC = 0.28209479177387814
 """The constant spherical harmonic: colour = 0.5 + SH_DC * sh[0]."""
 
+SHOWN, SHOWN_GREY = 0.02, 30.0
+"""Share of a picture's pixels, and grey levels by which each must change, for a hole to count as one."""
+MOST_DRAWS = 10
+
 
 @dataclass(frozen=True, eq=False)
 class Case:
@@ -73,12 +77,25 @@ def flicker(case: Case, generator: np.random.Generator) -> Evidence:
 
 
 def holes(case: Case, generator: np.random.Generator) -> Evidence:
-    """What lies within 0.5 to 1.2 m of three points that the flight sees is gone."""
-    radius, cloud = generator.uniform(0.5, 1.2), case.cloud
-    for _ in range(3):
-        point = _seen_point(case.evidence, generator)
-        cloud = cloud[np.linalg.norm(cloud.means - point, axis=1) > radius]
-    return filmed_again(case, cloud)
+    """What lies within 0.5 to 1.2 m of three points that the flight sees is gone, and it shows.
+
+    Drawn again while no sampled picture has changed in `SHOWN` of its pixels: a hole behind a wall hurts nobody.
+    """
+    for _ in range(MOST_DRAWS):
+        radius, cloud = generator.uniform(0.5, 1.2), case.cloud
+        for _ in range(3):
+            point = _seen_point(case.evidence, generator)
+            cloud = cloud[np.linalg.norm(cloud.means - point, axis=1) > radius]
+        damaged = filmed_again(case, cloud)
+        if _changed(case.evidence, damaged) >= SHOWN:
+            return damaged
+    raise ValueError(f"flight {case.evidence.flight.flight_id}: no hole of {MOST_DRAWS} shows")
+
+
+def _changed(before: Evidence, after: Evidence) -> float:
+    """Most of a sampled picture's pixels that are of quite another brightness."""
+    pairs = zip(before.sightings, after.sightings, strict=True)
+    return max(float((np.abs(a.luma - b.luma) > SHOWN_GREY).mean()) for a, b in pairs)
 
 
 def floaters(case: Case, generator: np.random.Generator) -> Evidence:

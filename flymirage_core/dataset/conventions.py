@@ -60,6 +60,8 @@ def lerobot_conventions() -> dict[str, Any]:
         "sim.clearance": "m from the drone's centre to the nearest voxel that may not be flown in",
         "sim.target_in_picture": "1 where the target's box centre projects into the picture (hidden or not), else 0",
         "task": "one of the episode's prompts, kinds taken in turn; all of them in meta/episodes, flymirage/prompts",
+        "flymirage/long_prompt": "in meta/episodes: one instruction over this episode and those before and behind it "
+        "that have the same; they were flown one after the other, and their frames follow one another; or empty",
         "timestamp": "frame_index / fps",
     }
 

@@ -1,6 +1,6 @@
 """`Episode`, one row of the data set, and how the products of a scene become episodes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
@@ -75,6 +75,17 @@ def episodes_of(products: SceneProducts) -> Iterator[Episode]:
         if verdict is not None and verdict.keep and prompts:
             target = products.boxes.by_id(flight.object_id)
             yield _episode(products, flight, target, verdict, prompts, licence)
+
+
+def long_prompts_of(products: SceneProducts, episodes: Iterable[Episode]) -> dict[int, str]:
+    """The long instruction by each of its flights, where all of them are episodes and training may read it."""
+    splits = {e.flight_id: e.split for e in episodes}
+    texts: dict[int, str] = {}
+    for long in products.prompts.long_prompts:
+        own = [splits.get(i) for i in long.flight_ids]
+        if None not in own and not ("train" in own and is_unseen_instruction(long.text)):
+            texts |= dict.fromkeys(long.flight_ids, long.text)
+    return texts
 
 
 def _episode(

@@ -32,7 +32,7 @@ from flymirage_core.errors import InputError, ProductError
 from flymirage_core.files import link_or_copy
 from flymirage_core.rendering.frames import CameraRig
 
-EXPORT_VERSION = 1
+EXPORT_VERSION = 2
 INDEX_NAME = "export.json"
 COMMON_FILES = ("boxes.parquet", "camera.json", "episodes.parquet", "long_prompts.parquet", "prompts.parquet")
 """Of a scene, in every format; its shard.json lists them with all its other files."""

@@ -12,7 +12,7 @@ from typing import Any
 
 from flymirage_core.dataset.card import hub_header
 from flymirage_core.dataset.conventions import lerobot_conventions
-from flymirage_core.dataset.episodes import Episode
+from flymirage_core.dataset.episodes import Episode, long_prompts_of
 from flymirage_core.dataset.export_check import check_lerobot
 from flymirage_core.dataset.export_folder import (
     ExportReport,
@@ -90,10 +90,10 @@ class LeRobotFormat:
         start = start_after(before)
         if not episodes:
             return Placed(empty_place(start), [])
-        described = self._features(products.frames.rig)
+        described, long_prompts = self._features(products.frames.rig), long_prompts_of(products, episodes)
         with EpisodeWriter(folder, products.frames.rig, described, start) as writer:
             for episode in sorted(episodes, key=lambda e: (SPLITS.index(e.split), e.flight_id)):
-                writer.add(products, episode)
+                writer.add(products, episode, long_prompts.get(episode.flight_id, ""))
         return writer.finish(products.scene)
 
     def keep(self, source: Path, folder: Path, shard: Shard, before: list[Shard]) -> Placed:

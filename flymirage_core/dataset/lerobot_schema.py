@@ -150,6 +150,7 @@ def episode_schema(described: dict[str, Any]) -> pa.Schema:
         ("flymirage/prompts", pa.list_(pa.string())),
         ("flymirage/prompt_kinds", pa.list_(pa.string())),
         ("flymirage/held_out_prompts", pa.list_(pa.string())),
+        ("flymirage/long_prompt", pa.string()),  # over this and the neighbouring episodes that have the same; or ""
         ("flymirage/licence", pa.string()),
         ("flymirage/rgb_crc32", pa.int64()),  # of the episode's video packets
         *((f"flymirage/{name}", pa.float64()) for name in REPORTED),

@@ -162,17 +162,17 @@ class LeRobotFolder:
         path = self.folder / self.info["video_path"].format(video_key=RGB_KEY, **where)
         return path, round(where["from_timestamp"] * self.info["fps"])
 
-    def row_group(self, record: EpisodeRecord) -> tuple[Path, int]:
-        """The data file, and the number of the episode's row group in it: each episode is one."""
-        files = self._first_in_file
-        place = (record.row["data/chunk_index"], record.row["data/file_index"])
-        return self._data_file(record), record.index - files[place]
+    def data(self, record: EpisodeRecord) -> tuple[Path, int]:
+        """The data file, and the number of the episode's first row in it."""
+        path = self._data_file(record)
+        return path, record.row["dataset_from_index"] - self._first_of_file[path]
 
     @cached_property
-    def _first_in_file(self) -> dict[tuple[int, int], int]:
-        first: dict[tuple[int, int], int] = {}
-        for e in self.episodes:
-            first.setdefault((e.row["data/chunk_index"], e.row["data/file_index"]), e.index)
+    def _first_of_file(self) -> dict[Path, int]:
+        """The number, in the whole, of each data file's first row."""
+        first: dict[Path, int] = {}
+        for episode in self.episodes:
+            first.setdefault(self._data_file(episode), episode.row["dataset_from_index"])
         return first
 
     def _data_file(self, record: EpisodeRecord) -> Path:

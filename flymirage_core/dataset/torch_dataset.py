@@ -72,7 +72,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
         self._ends = np.cumsum([e.length for e in self.episodes]).tolist()
         self._columns: dict[int, dict[str, NDArray[Any]]] = {}
         self._videos: OrderedDict[Path, _Video] = OrderedDict()
-        self._tables: OrderedDict[Path, pq.ParquetFile] = OrderedDict()
+        self._tables: OrderedDict[Path, _DepthTable] = OrderedDict()
         self._boxes: dict[str, BoxMap] = {}
 
     def __len__(self) -> int:
@@ -141,11 +141,9 @@ class FlightDataset(Dataset[dict[str, Any]]):
         return rgb.permute(2, 0, 1).to(torch.float32) / 255
 
     def _depth_mm(self, episode: EpisodeRecord, frame: int) -> NDArray[np.uint16]:
-        """One row of the episode's row group: only its page is decoded into a picture."""
-        path, group = self.export.row_group(episode)
-        file = _kept_open(self._tables, path, lambda: pq.ParquetFile(path, memory_map=True))
-        cell = file.read_row_group(group, columns=[DEPTH_KEY])[DEPTH_KEY][frame].as_py()
-        return png16_from(cell["bytes"] or b"", f"{path}: depth picture {frame} of episode {episode.index}")
+        path, first = self.export.data(episode)
+        table = _kept_open(self._tables, path, lambda: _DepthTable(path))
+        return png16_from(table.png(first + frame), f"{path}: depth picture {frame} of episode {episode.index}")
 
     def _mask(self, episode: EpisodeRecord, frame: int, state: NDArray[Any]) -> torch.Tensor:
         camera = camera_of(state, self.export.camera(episode.scene))
@@ -186,6 +184,21 @@ class _Video:
                 break
         self._decoder = None
         raise ProductError(f"{self._path} has no frame {number}; `flymirage validate` names what is wrong")
+
+
+class _DepthTable:
+    """A data file that stays open; of its depth pictures one row group is read at a time."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = pq.ParquetFile(path, memory_map=True)
+        groups = range(self._file.num_row_groups)
+        self._ends = np.cumsum([self._file.metadata.row_group(i).num_rows for i in groups]).tolist()
+
+    def png(self, row: int) -> bytes:
+        """The picture in the file's ``row``-th row, as it is stored."""
+        group = bisect_right(self._ends, row)
+        cells = self._file.read_row_group(group, columns=[DEPTH_KEY])[DEPTH_KEY]
+        return cells[row - self._ends[group] + len(cells)].as_py()["bytes"] or b""
 
 
 def _kept_open(opened: "OrderedDict[Path, T]", path: Path, make: Callable[[], T]) -> T:

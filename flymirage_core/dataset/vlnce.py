@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from flymirage_core.dataset.episodes import Episode
@@ -28,9 +29,12 @@ GOAL_RADIUS = 1.0
 """Metres from the target point within which an evaluation may count success; stored with every goal."""
 REFERENCE_STEP = 0.25
 """Metres between points of the reference path: VLN-CE's step."""
+PATH_TOLERANCE = 0.05
+"""Metres; where a path turns sharply the flight leaves its straight pieces by 1 to 2 cm."""
 HELD_OUT_SPLIT = "test_unseen_instruction"
 
 Row = dict[str, Any]
+Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -80,25 +84,65 @@ class VlnceFormat(SceneFolders):
         }
 
     def check(self, folder: Path, products: SceneProducts) -> int:
-        """The drone's camera at each episode's start must see the target where its first frame does."""
-        T_body_camera = np.array(products.frames.rig.T_body_camera)
+        """Every episode against the frames it was made from: start, path, goals, the target in the first picture."""
         checked: set[int] = set()
         for path in sorted(folder.glob(f"*/content/{products.scene}.json.gz")):
             for row in _read_gz(path):
-                flight_id = row["trajectory_id"][0]
-                body = np.eye(4)
-                body[:3, :3] = Rotation.from_quat(row["start_rotation"]).as_matrix()
-                body[:3, 3] = row["start_position"]
-                camera = Camera(products.frames.rig.intrinsics, body @ T_body_camera)
-                source = products.frames.flight(flight_id).cameras()[0]
-                (found, depth), (expected, _) = (c.project(row["goals"][0]["object"]) for c in (camera, source))
-                if depth[0] > 0 and not np.linalg.norm(found - expected) <= PIXEL_TOLERANCE:
-                    raise ProductError(
-                        f"export self-test: episode {row['episode_id']} of {path} starts where its target projects "
-                        f"{np.linalg.norm(found - expected):.1f} pixels from where its first picture has it"
-                    )
-                checked.add(flight_id)
+                where = f"export self-test: episode {row['episode_id']} of {path}"
+                _check_start(row, products, where)
+                _check_path(row, products, where)
+                checked.update(row["trajectory_id"])
         return len(checked)
+
+
+def _check_start(row: Row, products: SceneProducts, where: str) -> None:
+    """The drone's camera at the start must see the first target where the first frame does."""
+    body = np.eye(4)
+    body[:3, :3] = Rotation.from_quat(row["start_rotation"]).as_matrix()
+    body[:3, 3] = row["start_position"]
+    camera = Camera(products.frames.rig.intrinsics, body @ np.array(products.frames.rig.T_body_camera))
+    source = products.frames.flight(row["trajectory_id"][0]).cameras()[0]
+    (found, depth), (expected, _) = (c.project(row["goals"][0]["object"]) for c in (camera, source))
+    off = float(np.linalg.norm(found - expected))
+    if depth[0] > 0 and not off <= PIXEL_TOLERANCE:
+        raise ProductError(f"{where} starts where its target projects {off:.1f} pixels from where its picture has it")
+
+
+def _check_path(row: Row, products: SceneProducts, where: str) -> None:
+    """The path must begin at the start, pass where every frame was taken, and end at the goal; so must each leg."""
+    T_camera_body = np.linalg.inv(products.frames.rig.T_body_camera)
+    path, goals = np.array(row["reference_path"]), row["goals"]
+    legs = [products.frames.flight(i).cameras() for i in row["trajectory_id"]]
+    flown = [np.array([(c.T_world_camera @ T_camera_body)[:3, 3] for c in cameras]) for cameras in legs]  # (F, 3) each
+    errors = {
+        "begins {:.2f} m from its start": np.linalg.norm(path[0] - row["start_position"]),
+        "ends {:.2f} m from its goal": np.linalg.norm(path[-1] - goals[-1]["position"]),
+        "has points {:.2f} m apart": np.linalg.norm(np.diff(path, axis=0), axis=1).max(initial=0.0) - REFERENCE_STEP,
+        "passes {:.2f} m from where a frame was taken": _distance_to_path(np.concatenate(flown), path).max(),
+    }
+    for goal, leg in zip(goals, flown[-len(goals) :], strict=True):
+        flies_to = products.boxes.by_id(goal["object_id"]).centre
+        errors |= {
+            f"has the goal {goal['object_category']} {{:.2f}} m from its flight's end": np.linalg.norm(
+                leg[-1] - goal["position"]
+            ),
+            f"has the object {goal['object_category']} {{:.2f}} m from its box": np.linalg.norm(
+                np.subtract(flies_to, goal["object"])
+            ),
+        }
+    for text, error in errors.items():
+        if not error <= PATH_TOLERANCE:
+            raise ProductError(f"{where} {text.format(error)}; at most {PATH_TOLERANCE} m are allowed")
+
+
+def _distance_to_path(points: Points, path: Points) -> NDArray[np.float64]:
+    """Metres (N,) from each point (N, 3) to the nearest of the straight pieces between a path's points (P, 3)."""
+    if len(path) < 2:
+        return np.asarray(np.linalg.norm(points - path[0], axis=1))
+    start, along = path[:-1], np.diff(path, axis=0)  # (P - 1, 3)
+    offset = points[:, None] - start  # (N, P - 1, 3)
+    share = np.clip((offset * along).sum(axis=-1) / np.maximum((along**2).sum(axis=-1), 1e-12), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(offset - share[..., None] * along, axis=-1).min(axis=1))
 
 
 def _row(products: SceneProducts, legs: list[Episode], text: str, kind: str) -> Row:

@@ -12,10 +12,12 @@ from flymirage_core.annotation.boxes import ObjectBox
 from flymirage_core.language.picture_measures import Luma, to_luma
 from flymirage_core.navigation.trajectories import Flight
 from flymirage_core.rendering.camera import Camera
-from flymirage_core.rendering.frames import FlightFrames
+from flymirage_core.rendering.frames import FlightFrames, Frames
 
 PAPER_FRAME_RATE = 30.0
 """Hz: the video rate that `VerdictSettings.frame_step` counts frames of (section III-C)."""
+NEIGHBOUR_STEP = 2
+"""Every second sampled frame is compared with the one after it: half of a verdict's time is decoding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,18 +44,33 @@ class Evidence:
     pairs: tuple[tuple[Sighting, Sighting], ...]  # neighbouring frames
     coverage: NDArray[np.float64]  # (F,) share of opaque pixels of every frame
     frame_rate: float
+    openings: float = 0.0
+    """Share of a picture that the scene itself leaves empty, such as a captured room's door (`scene_openings`)."""
 
     @staticmethod
-    def of(flight: Flight, target: ObjectBox, frames: FlightFrames, frame_step: int) -> "Evidence":
-        """Decodes the sampled frames and their neighbours, no others. Raises `ProductError` if a video is torn."""
+    def of(
+        flight: Flight, target: ObjectBox, frames: FlightFrames, frame_step: int, openings: float = 0.0
+    ) -> "Evidence":
+        """Decodes the sampled frames and every second one's neighbour. Raises `ProductError` if a video is torn."""
         count, rate = len(frames), frames.rig.frame_rate
         sampled = sampled_indices(count, rate, frame_step)
-        wanted = sorted({*sampled, *(i + 1 for i in sampled if i + 1 < count)})
+        wanted = sorted({*sampled, *(i + 1 for i in sampled[::NEIGHBOUR_STEP] if i + 1 < count)})
         cameras = frames.cameras()
         pictures = zip(wanted, frames.rgb_at(wanted), frames.depth_at(wanted), strict=True)
         seen = {i: Sighting(i, cameras[i], rgb, depth) for i, rgb, depth in pictures}
         coverage = frames.table["alpha_coverage"].to_numpy(float)  # (F,)
-        return Evidence(flight, target, tuple(seen[i] for i in sampled), neighbours(seen.values()), coverage, rate)
+        sightings, pairs = tuple(seen[i] for i in sampled), neighbours(seen.values())
+        return Evidence(flight, target, sightings, pairs, coverage, rate, openings)
+
+
+def scene_openings(frames: Frames) -> float:
+    """Share of its worst picture that a scene's median flight finds empty (alpha < 0.5): what the scene is like.
+
+    The door of a captured room, behind which nothing was captured, is seen by most flights; a hole by few.
+    """
+    if frames.table.empty:
+        return 0.0
+    return float(1.0 - frames.table.groupby("flight_id")["alpha_coverage"].min().median())
 
 
 def neighbours(sightings: Iterable[Sighting]) -> tuple[tuple[Sighting, Sighting], ...]:

@@ -31,25 +31,32 @@ LEAST_VISIBLE_PROBES = 3
 """Of nine: a frame sees the target when the centre, or this many probes, are in the picture and not hidden."""
 CLEARANCE_SLACK = 0.17
 """Metres: the diagonal of the occupancy's voxels, by which a clearance may be too large."""
+OPENINGS_FACTOR = 2.0
+"""A flight may look into the scene's own openings from nearer than the median flight does."""
 STILL = (0.05, 0.05)
 """m/s and rad/s below which the drone does nothing."""
 
 
-def alpha_coverage_gate(coverage: NDArray[np.float64], settings: VerdictSettings) -> GateResult:
+def alpha_coverage_gate(coverage: NDArray[np.float64], openings: float, settings: VerdictSettings) -> GateResult:
     """Worst share of opaque pixels (alpha >= 0.5) over all frames; ``coverage`` (F,) in [0, 1]."""
     worst = int(np.argmin(coverage))
-    value, threshold = float(coverage[worst]), settings.min_alpha_coverage
+    value, threshold = float(coverage[worst]), 1.0 - empty_share(openings, settings.max_empty)
     reason = f"frame {worst} has holes: only {value:.0%} of its pixels are opaque, at least {threshold:.0%} must be"
     return _at_least("alpha_coverage", value, threshold, reason)
 
 
-def hole_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:
+def hole_gate(sightings: Sequence[Sighting], openings: float, settings: VerdictSettings) -> GateResult:
     """Largest connected part without a depth return, as a share of the picture, over the sampled frames."""
     holes = np.array([picture_measures.largest_hole(s.depth) for s in sightings])
-    worst, threshold = int(np.argmax(holes)), settings.max_hole
+    worst, threshold = int(np.argmax(holes)), empty_share(openings, settings.max_hole)
     value, frame = float(holes[worst]), sightings[worst].frame_index
     reason = f"frame {frame} has a hole of {value:.1%} of the picture, at most {threshold:.1%} are allowed"
     return _at_most("hole", value, threshold, reason)
+
+
+def empty_share(openings: float, limits: tuple[float, float]) -> float:
+    """What may be empty in a scene with ``openings``: `OPENINGS_FACTOR` times them, within ``limits``."""
+    return float(np.clip(OPENINGS_FACTOR * openings, *limits))
 
 
 def blur_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:

@@ -8,7 +8,7 @@ import numpy as np
 from flymirage_core.annotation.boxes import BoxMap
 from flymirage_core.errors import ProductError
 from flymirage_core.language import gates
-from flymirage_core.language.evidence import Evidence
+from flymirage_core.language.evidence import Evidence, scene_openings
 from flymirage_core.language.reprojection import change
 from flymirage_core.language.settings import VerdictSettings
 from flymirage_core.language.verdicts import GateResult, QualityVerdicts, Verdict
@@ -38,7 +38,7 @@ class MeasuredJudge:
     settings: VerdictSettings
     limits: PlannerSettings = field(default_factory=PlannerSettings)
     """The quadrotor's limits that flights were planned with."""
-    name: str = "measured 2"
+    name: str = "measured 3"
 
     def judge(self, frames: Frames, flights: Trajectories, boxes: BoxMap) -> QualityVerdicts:
         """One verdict for each flight, in their order.
@@ -46,9 +46,10 @@ class MeasuredJudge:
         Raises `ProductError` if products do not belong together, or a video is damaged.
         """
         frames.check()
-        return QualityVerdicts(tuple(self._verdict(frames, flight, boxes) for flight in flights))
+        openings = scene_openings(frames)
+        return QualityVerdicts(tuple(self._verdict(frames, flight, boxes, openings) for flight in flights))
 
-    def _verdict(self, frames: Frames, flight: Flight, boxes: BoxMap) -> Verdict:
+    def _verdict(self, frames: Frames, flight: Flight, boxes: BoxMap, openings: float) -> Verdict:
         try:
             target = boxes.by_id(flight.object_id)
         except KeyError:
@@ -56,7 +57,8 @@ class MeasuredJudge:
                 f"flight {flight.flight_id} flies to object {flight.object_id}, not among the {len(boxes)} boxes: "
                 "the products are of different runs; materialise `task_sets` and what follows again"
             ) from None
-        evidence = Evidence.of(flight, target, frames.flight(flight.flight_id), self.settings.frame_step)
+        filmed = frames.flight(flight.flight_id)
+        evidence = Evidence.of(flight, target, filmed, self.settings.frame_step, openings)
         results = self.gates(evidence)
         return Verdict(flight.flight_id, all(g.passed for g in results), results, self.name)
 
@@ -66,8 +68,8 @@ class MeasuredJudge:
         changes = [c for pair in evidence.pairs if (c := change(*pair)) is not None]
         times = np.array([s.frame_index for s in sightings]) / evidence.frame_rate  # (S,)
         return (
-            gates.alpha_coverage_gate(evidence.coverage, settings),
-            gates.hole_gate(sightings, settings),
+            gates.alpha_coverage_gate(evidence.coverage, evidence.openings, settings),
+            gates.hole_gate(sightings, evidence.openings, settings),
             gates.blur_gate(sightings, settings),
             gates.noise_gate(sightings, settings),
             gates.contrast_gate(sightings, settings),

@@ -56,9 +56,12 @@ def contrast(luma: Luma) -> float:
 
 
 def largest_hole(depth: NDArray[np.uint16]) -> float:
-    """Share of the picture that its largest connected part without a depth return takes; 0 = no return."""
-    missing = (depth == 0).astype(np.uint8)
+    """Share of the picture that its largest connected part without a depth return takes; 0 = no return.
+
+    Of every second pixel in every second row: holes that matter are larger, and it is a quarter of the work.
+    """
+    missing = (depth[::2, ::2] == 0).astype(np.uint8)
     if not missing.any():
         return 0.0
     _, _, stats, _ = cv2.connectedComponentsWithStats(missing, connectivity=4)
-    return float(stats[1:, cv2.CC_STAT_AREA].max() / depth.size)
+    return float(stats[1:, cv2.CC_STAT_AREA].max() / missing.size)

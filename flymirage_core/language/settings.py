@@ -6,6 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field
 
 Positive = Annotated[float, Field(gt=0)]
 Count = Annotated[int, Field(ge=1)]
+Limits = tuple[Annotated[float, Field(ge=0, le=1)], Annotated[float, Field(ge=0, le=1)]]
+"""Least and most."""
 
 
 class VerdictSettings(BaseModel):
@@ -13,11 +15,11 @@ class VerdictSettings(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    min_alpha_coverage: Positive = 0.75
-    """Least share of a frame's pixels with alpha >= 0.5, over the flight's worst frame; the open door of a captured
-    room, behind which nothing was captured, takes up to a fifth of a picture."""
-    max_hole: Positive = 0.2
-    """Largest connected part of a sampled frame without a depth return, as a share of its pixels."""
+    max_empty: Limits = (0.08, 0.25)
+    """Most of a frame's pixels with alpha < 0.5, over the flight's worst frame: in a closed scene, and in one with
+    openings of its own (a captured room's door, behind which nothing was captured), which the median flight sees."""
+    max_hole: Limits = (0.04, 0.2)
+    """Largest connected part of a sampled frame without a depth return, as a share of its pixels; likewise."""
     max_blur: Positive = 0.46
     """Crete et al.'s blur effect (0 sharp, 1 blurred), median over sampled frames."""
     max_noise: Positive = 3.0

@@ -3,7 +3,9 @@
 import csv
 import gzip
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -17,6 +19,7 @@ from flymirage_core.dataset.formats import FORMATS
 from flymirage_core.dataset.lerobot import DepthExport
 from flymirage_core.dataset.scene_products import SceneProducts
 from flymirage_core.dataset.tfrecord import example_bytes, example_from, read_records, write_records
+from flymirage_core.dataset.vlnce import VlnceFormat
 from flymirage_core.errors import InputError, ProductError
 
 OTHERS = [name for name in FORMATS if name != "lerobot"]
@@ -120,6 +123,35 @@ class TestVlnce:
             flight = scenes[0].trajectories.flights[row["trajectory_id"][-1]]
             np.testing.assert_allclose(row["reference_path"][-1], flight.positions[-1], atol=1e-4)
             np.testing.assert_allclose(row["goals"][-1]["position"], flight.positions[-1])
+
+    @pytest.mark.parametrize(
+        ("spoil", "said"),
+        [
+            (lambda row: row["start_position"].__setitem__(2, 9.0), "starts where|begins"),
+            (lambda row: row["reference_path"].pop(0), "begins 0.2. m from its start"),
+            (lambda row: row["reference_path"].pop(), "ends 0..* m from its goal"),
+            (lambda row: row["reference_path"].pop(3), "has points"),
+            (lambda row: row["reference_path"][3].__setitem__(2, 1.4), "has points|passes"),
+            (lambda row: row["goals"][-1]["object"].__setitem__(0, 9.0), "from its box|starts where"),
+            (lambda row: row.update(trajectory_id=[(row["trajectory_id"][0] + 1) % 2]), "m from"),
+        ],
+    )
+    def test_the_self_test_finds_a_path_or_a_goal_that_is_not_the_flights(
+        self,
+        exports: dict[str, Path],
+        scenes: list[SceneProducts],
+        tmp_path: Path,
+        spoil: Callable[[Any], object],
+        said: str,
+    ) -> None:
+        source = next(exports["vlnce"].glob("*/content/cafe.json.gz"))
+        episodes = json.loads(gzip.decompress(source.read_bytes()))["episodes"]
+        spoil(episodes[0])
+        path = tmp_path / source.relative_to(exports["vlnce"])
+        path.parent.mkdir(parents=True)
+        path.write_bytes(gzip.compress(json.dumps({"episodes": episodes}).encode()))
+        with pytest.raises(ProductError, match=said):
+            VlnceFormat().check(tmp_path, scenes[0])
 
     def test_one_scene_is_a_file_of_its_own(self, exports: dict[str, Path]) -> None:
         paths = list(exports["vlnce"].glob("*/content/hall.json.gz"))

@@ -26,7 +26,7 @@ from flymirage_core.dataset.lerobot_schema import DEPTH_KEY, RGB_KEY
 from flymirage_core.dataset.reader import LeRobotFolder
 from flymirage_core.dataset.scene_products import SceneProducts
 from flymirage_core.errors import InputError, ProductError
-from flymirage_core.language.prompts import Prompts
+from flymirage_core.language.prompts import LongPrompt, Prompts
 from flymirage_core.rendering.camera import Intrinsics
 from flymirage_core.rendering.frames import CameraRig, Frames
 
@@ -97,6 +97,30 @@ def test_states_are_the_flights_states_and_actions_lead_from_frame_to_frame(
         np.testing.assert_allclose(yaws, flight.yaws[::3], atol=1e-5)
         assert (action[-1] == 0).all()
         assert columns["next.done"].tolist() == [False] * (episode.length - 1) + [True]
+
+
+def test_a_long_instruction_stands_beside_each_flight_of_its_run_and_their_frames_follow_one_another(
+    cafe: SceneProducts, tmp_path: Path
+) -> None:
+    text = "Fly to the red chair, then to the blue one."
+    ids = tuple(v.flight_id for v in cafe.verdicts if v.keep)
+    flights = tuple(replace(f, set_index=0, leg_index=i) for i, f in enumerate(cafe.trajectories.flights))
+    prompts = replace(cafe.prompts, long_prompts=(LongPrompt(0, ids[:2], text, "test"),))
+    one_set = replace(cafe, prompts=prompts, trajectories=replace(cafe.trajectories, flights=flights))
+    export = LeRobotFolder(export_lerobot([one_set], tmp_path / "out").folder)
+    run = [e for e in export.episodes if e.row["flymirage/long_prompt"] == text]
+    assert [e.flight_id for e in run] == list(ids[:2])
+    assert run[0].row["dataset_to_index"] == run[1].row["dataset_from_index"]
+    assert {e.row["flymirage/long_prompt"] for e in export.episodes if e not in run} <= {""}
+    half = replace(one_set, prompts=replace(prompts, prompts=prompts.of_flight(ids[0])))
+    alone = LeRobotFolder(export_lerobot([half], tmp_path / "half").folder)
+    assert [e.row["flymirage/long_prompt"] for e in alone.episodes] == [""], "its second flight is no episode"
+
+
+def test_one_frames_depth_is_read_without_the_whole_flights(export: LeRobotFolder) -> None:
+    for path in sorted((export.folder / "data").rglob("*.parquet")):
+        file = pq.ParquetFile(path).metadata
+        assert max(file.row_group(i).num_rows for i in range(file.num_row_groups)) <= lerobot_files.ROWS_OF_GROUP
 
 
 def test_lerobot_doctor_finds_nothing_broken(report: ExportReport) -> None:

@@ -79,6 +79,19 @@ def test_one_frame_with_holes_drops_the_flight_and_names_the_frame(tmp_path: Pat
     assert answer.reasons[0].startswith("frame 7 has holes: only 40%")
 
 
+def test_an_opening_that_most_flights_see_is_the_rooms_and_a_hole_that_one_sees_is_its_own(tmp_path: Path) -> None:
+    flights = tuple(flight_to(CHAIR, i) for i in range(3))
+    frames = film(tmp_path, list(flights), ROOM)
+    judge, worst = MeasuredJudge(SETTINGS), {0: 0.86, 1: 1.0, 2: 1.0}
+    frames.table["alpha_coverage"] = frames.table["flight_id"].map(worst)
+    assert judge.judge(frames, Trajectories(flights), ROOM).kept == (1, 2)
+    worst |= {1: 0.9, 2: 0.9}
+    frames.table["alpha_coverage"] = frames.table["flight_id"].map(worst)
+    assert judge.judge(frames, Trajectories(flights), ROOM).kept == (0, 1, 2)
+    frames.table.loc[3, "alpha_coverage"] = 0.7
+    assert judge.judge(frames, Trajectories(flights), ROOM).kept == (1, 2), "no room's door is as large as that"
+
+
 @pytest.mark.parametrize(("gain", "offset", "gate"), [(0.05, 0, "darkness"), (0.05, 243, "glare")])
 def test_dark_and_washed_out_pictures_are_dropped(tmp_path: Path, gain: float, offset: float, gate: str) -> None:
     flight = flight_to(CHAIR, 0)
