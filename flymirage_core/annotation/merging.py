@@ -173,11 +173,16 @@ def _join_lost_poles(parts: PartSet) -> None:
     """A foot on the floor and a shade right above it, whose pole no view resolved."""
     order = sorted(parts.parts, key=lambda k: (float(parts.parts[k].centre[2]), k))
     for n, i in enumerate(order):
+        if i not in parts.parts or not _is_foot(parts.parts[i]):
+            continue
         for j in order[n + 1 :]:
-            if i not in parts.parts:
-                break
             if j in parts.parts and _one_stand(parts.parts[i], parts.parts[j]) and not _between(parts, i, j):
                 i = parts.join(i, j)
+
+
+def _is_foot(part: Part) -> bool:
+    """Whether it stands on the floor or on a support."""
+    return part.clearance <= FOOT_CLEARANCE or bool(part.thing)
 
 
 def _one_stand(lower: Part, upper: Part) -> bool:
@@ -189,7 +194,7 @@ def _foot_and_shade(foot: Part, shade: Part) -> bool:
     gap = float(shade.lower[2] - foot.upper[2])
     max_gap = MAX_TABLE_POLE_GAP if foot.thing else MAX_POLE_GAP
     return bool(
-        (foot.clearance <= FOOT_CLEARANCE or foot.thing)
+        _is_foot(foot)
         and not shade.thing
         and shade.clearance > SHADE_CLEARANCE
         and -NEAR < gap < max_gap
@@ -214,9 +219,15 @@ def _join_lost_joints(parts: PartSet) -> bool:
     """Parts of similar colour that nearly touch; whether anything was joined."""
     changed = False
     order = sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k))
+    lower = np.array([parts.parts[k].lower for k in order]).reshape(-1, 3)  # (P, 3), of those still to be looked at
+    upper = np.array([parts.parts[k].upper for k in order]).reshape(-1, 3)
     for n, i in enumerate(order):
-        for j in order[n + 1 :]:
-            if i in parts.parts and j in parts.parts and _nearly_touching(parts.parts[i], parts.parts[j]):
+        if i not in parts.parts:
+            continue
+        part = parts.parts[i]
+        gaps = np.maximum(0, np.maximum(part.lower - upper[n + 1 :], lower[n + 1 :] - part.upper))
+        for j in (order[n + 1 + m] for m in np.flatnonzero(np.linalg.norm(gaps, axis=1) <= JOINT_GAP)):
+            if j in parts.parts and _nearly_touching(part, parts.parts[j]):
                 parts.join(i, j)  # keeps i, the larger
                 changed = True
                 break

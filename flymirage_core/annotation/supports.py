@@ -107,14 +107,18 @@ def _tops(faces: Sequence[Face]) -> list[Face]:
 def _on_face(face: Face, points: Float32, edges: Index) -> list[Index]:
     """Point indices of each thing that stands on a face."""
     bottom = face.height + FACE_GAP
-    local = face.plan.local(points)  # (N, 2)
-    near = (np.abs(local) < face.plan.size / 2 + SURROUNDINGS).all(axis=1)
-    above = near & (points[:, 2] > bottom) & (points[:, 2] < bottom + MAX_THING_HEIGHT)
+    above = (points[:, 2] > bottom) & (points[:, 2] < bottom + MAX_THING_HEIGHT)
+    reach = np.linalg.norm(face.plan.size) / 2 + 2 * SURROUNDINGS
+    above &= (np.abs(points[:, :2] - face.plan.centre) < reach).all(axis=1)
     index = np.flatnonzero(above)
+    local = np.zeros((len(points), 2))
+    local[index] = face.plan.local(points[index])  # (N, 2), where it is asked for
+    index = index[(np.abs(local[index]) < face.plan.size / 2 + SURROUNDINGS).all(axis=1)]
     if len(index) < MIN_THING_POINTS:
         return []
     position = np.full(len(points), -1, np.intp)
     position[index] = np.arange(len(index))
+    above = position >= 0
     inner = position[edges[above[edges[:, 0]] & above[edges[:, 1]]]]
     labels = _components(len(index), inner)
     order = np.argsort(labels, kind="stable")
