@@ -17,9 +17,9 @@ from flymirage_assets.staleness import StageSpec, stage_specs, stale_products
 from flymirage_core.settings import Settings
 from resources.store import Store, open_store
 
-PAGE_SECONDS = 5.0
+PAGE_SECONDS = 4.0
 """A tick looks at scenes for so long and leaves the others to the next one; Dagster stops a tick after 60 s."""
-AT_ONCE = 50
+AT_ONCE = 20
 """Scenes between two looks at the clock."""
 
 
@@ -71,12 +71,13 @@ def _page(
     specs, started, seen = stage_specs(defs), time.monotonic(), 0
     running = instance.get_run_records(dg.RunsFilter(statuses=UNFINISHED))
     busy = {record.dagster_run.tags.get("dagster/partition") for record in running}
-    wanted: dict[str, list[str]] = {}
+    requests: list[dg.RunRequest] = []
     while seen < len(keys) and (not seen or time.monotonic() - started < PAGE_SECONDS):
         batch = keys[seen : seen + AT_ONCE]
-        wanted |= _wanted(store, specs, settings, [key for key in batch if key not in busy])
+        wanted = _wanted(store, specs, settings, [key for key in batch if key not in busy])
+        requests += [_request(store, scene, assets, morning) for scene, assets in wanted.items()]
         seen += len(batch)
-    return [_request(store, scene, assets, morning) for scene, assets in wanted.items()], seen
+    return requests, seen
 
 
 def _wanted(store: Store, specs: Sequence[StageSpec], settings: Settings, keys: Sequence[str]) -> dict[str, list[str]]:
