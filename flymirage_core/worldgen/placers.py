@@ -35,6 +35,15 @@ TABLE_GAP = 0.05
 PICTURE_GAP = 0.12
 FRONT_OF_PICTURE = 0.35
 """Nothing stands this close before a thing on the wall."""
+HIGH_UP = {
+    "balcony": 2.75,
+    "awning": 2.2,
+    "shop sign": 2.2,
+    "basketball hoop": 2.3,
+    "loudspeaker": 2.4,
+    "satellite dish": 2.3,
+}
+"""Metres: undersides of what is on a wall over people's heads, where the wall is high enough."""
 LOW_HANGING = 1.95
 """Nothing hangs lower than this, except over a table."""
 HANGING_AT = (2.1, 3.0)
@@ -273,8 +282,7 @@ def _place_on_wall(layout: Layout, space: Space, planned: PlannedObject, kind: K
     for _ in range(planned.count):
         size = layout.size(space, planned, kind)
         for _ in range(TRIES):
-            middle = layout.rng.normal(1.62, 0.15 if space.height < 4 else 0.4)
-            bottom = float(np.clip(middle - size[2] / 2, 0.9, max(space.height - size[2] - 0.2, 0.9)))
+            bottom = _height_on_wall(layout.rng, space, planned.noun, size[2])
             solid = next(_spots_along_walls(layout, space, size, bottom), None)
             if solid is None:
                 break
@@ -286,6 +294,14 @@ def _place_on_wall(layout: Layout, space: Space, planned: PlannedObject, kind: K
             solid = None
         if solid is None:
             layout.miss(planned.noun, "no free stretch of wall")
+
+
+def _height_on_wall(rng: np.random.Generator, space: Space, noun: str, height: float) -> float:
+    """Metres: the underside of a thing on a wall."""
+    middle, over = rng.normal(1.62, 0.15 if space.height < 4 else 0.4), HIGH_UP.get(noun, np.inf)
+    if over + height < space.height - 0.2:
+        return float(over + abs(middle - 1.62))
+    return float(np.clip(middle - height / 2, 0.9, max(space.height - height - 0.2, 0.9)))
 
 
 def _place_hanging(layout: Layout, space: Space, planned: PlannedObject, kind: Kind) -> None:

@@ -70,7 +70,8 @@ def lit_world(assembly: Assembly, count: int) -> LitWorld:
     glow = surfels.emission[:, None] * light_unit(light)
     radiance = surfels.albedo * (light.through(surfels.points, surfels.normals, leaf) / np.pi + glow)
     cloud = _joined(
-        splats(surfels, light.seen(radiance), np.where(leaf, LEAF_OPACITY, OPACITY)), _backing(assembly, spacing, light)
+        splats(surfels, light.seen(radiance), np.where(leaf, LEAF_OPACITY, OPACITY)),
+        _backing(assembly, spacing * factors, light),
     )
     if illumination.sky is not None:
         cloud = _joined(cloud, dome(light))
@@ -93,29 +94,33 @@ def _cut(
     return pieces, leaf[seen]
 
 
-def _backing(assembly: Assembly, spacing: float, light: BakedLight) -> GaussianCloud:
-    """Coarse splats a little behind the building's large faces, of the faces' colours.
+def _backing(assembly: Assembly, spacings: Float, light: BakedLight) -> GaussianCloud:
+    """Coarse splats a little behind the building's large faces, of their colours; ``spacings`` (M,) are the parts'.
 
     Between the splats of a face a few per cent of what is behind shows, which would be nothing: a dark grid.
     """
-    side = BACKING_SIDES * spacing
-    parts = [p for t in assembly.things if t.object_id < 0 for p in t.parts if isinstance(p.surface, Sheet)]
-    inner = [q for p in parts if p.material.opacity == 1 and p.material.emission == 0 for q in _inset(p, side)]
-    surfels = Surfels.joined([surfels_of(p, side) for p in inner])
+    sides = iter(BACKING_SIDES * spacings)
+    parts = [(p, float(next(sides)), t.object_id) for t in assembly.things for p in t.parts]
+    inner = [(_inset(p), side) for p, side, owner in parts if owner < 0 and _is_face(p)]
+    surfels = Surfels.joined([surfels_of(p, side) for p, side in inner if p])
     colours = light.seen(surfels.albedo * light.irradiance(surfels.points, surfels.normals) / np.pi)
     behind = replace(surfels, points=surfels.points - BEHIND * surfels.normals)
     return splats(behind, colours, np.full(len(surfels), OPACITY))
 
 
-def _inset(part: Part, side: float) -> list[Part]:
+def _is_face(part: Part) -> bool:
+    return isinstance(part.surface, Sheet) and part.material.opacity == 1 and part.material.emission == 0
+
+
+def _inset(part: Part) -> Part | None:
     """A face less a margin all round, cut evenly, so that what backs it does not look out at its edges; or nothing."""
     assert isinstance(part.surface, Sheet)
     corner, a, b = (np.asarray(v) for v in (part.surface.corner, part.surface.a, part.surface.b))
     u, v = (MARGIN / max(float(np.linalg.norm(e)), 1e-9) for e in (a, b))
     if max(u, v) > 0.3:
-        return []
+        return None
     inner = Sheet(vector(corner + u * a + v * b), vector((1 - 2 * u) * a), vector((1 - 2 * v) * b))
-    return [replace(part, surface=inner, material=replace(part.material, joints=(0, 0, 0), stretch=1.0, detail=1.0))]
+    return replace(part, surface=inner, material=replace(part.material, joints=(0, 0, 0), stretch=1.0, detail=1.0))
 
 
 def light_unit(light: BakedLight) -> float:
