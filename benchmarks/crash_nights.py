@@ -6,7 +6,7 @@
     python benchmarks/crash_nights.py everything     # daemon, web server, code server, worker at once
     python benchmarks/crash_nights.py two-daemons    # a second daemon on the same instance, all night
     python benchmarks/crash_nights.py clock          # the clock a day ahead, then back (needs libfaketime)
-    python benchmarks/crash_nights.py calm           # nothing happens
+    python benchmarks/crash_nights.py calm           # nothing happens; the morning's report
 
 Stages are stand-ins (tests/stand_in.py) that take a while; schedule, daemon, queue, code server, workers and store are
 the real ones. The night's schedule ticks every minute, and every tick means the same night.
@@ -58,7 +58,7 @@ class Night:
         folder.mkdir()
         self.clock.write_text("+0")
         self.night = datetime.now(UTC)
-        morning = self.night + timedelta(minutes=5)
+        morning = self.night + timedelta(minutes=4)
         (folder / "flymirage.toml").write_text(
             f"[growth]\nnightly = true\nscenes_per_night = {scenes}\nmin_free_gb = 0\n"
             f'cron = "* * * * *"\nsweep_cron = "{morning:%M %H * * *}"\n'
@@ -122,6 +122,15 @@ class Night:
             self.instance = dg.DagsterInstance.from_config(str(self.home))
         return Counter(run.status.value for run in self.instance.get_runs())
 
+    def report(self) -> dict[str, object] | None:
+        """The numbers of the last growth report, if there is one."""
+        self.runs()
+        assert self.instance is not None
+        event = self.instance.get_latest_materialization_event(dg.AssetKey("growth_report"))
+        if event is None or event.asset_materialization is None:
+            return None
+        return {name: entry.value for name, entry in event.asset_materialization.metadata.items()}
+
     def wait(self, until: Callable[[], bool], seconds: float) -> bool:
         """True if it came true in time; `dagster dev` is started again if it gave up."""
         deadline = time.monotonic() + seconds
@@ -177,7 +186,9 @@ def clock(night: Night) -> None:
 
 
 def calm(night: Night) -> None:
-    """Nothing happens."""
+    """Nothing happens; the morning's report is printed."""
+    night.wait(lambda: night.report() is not None, 600)
+    print(f"    report: {night.report()}", flush=True)
 
 
 EVENTS: dict[str, Callable[[Night], None]] = {
