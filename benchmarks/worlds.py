@@ -16,6 +16,7 @@ import argparse
 import json
 import resource
 import time
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -32,7 +33,7 @@ from flymirage_core.scene.description import SceneDescription
 from flymirage_core.scene.taxonomy import standard_taxonomy
 from flymirage_core.scene.writer import OfflineSceneWriter
 from flymirage_core.settings import Settings
-from flymirage_core.worldgen.assembly import assemble
+from flymirage_core.worldgen.assembly import Assembly, assemble
 from flymirage_core.worldgen.reference import ReferenceTracer
 from flymirage_core.worldgen.sampling import LitWorld, lit_world
 from flymirage_core.worldgen.truth import WorldTruth
@@ -69,15 +70,16 @@ class Row:
     things: int
     labels: list[str]
     missed: int
-    tasks: int = 0
-    flown: int = 0
-    flown_of_more: int = 0
+    tasks: int | None = None  # None: not tried yet
+    flown: int | None = None
+    flown_of_more: int | None = None
 
     def line(self) -> str:
         return (
             f"{self.name[:52]:52} {self.seconds:5.1f} {self.megabytes:5.0f} "
             f"{self.splats:7} {mean(self.psnr):5.1f} {mean(self.ssim):6.3f} {100 * mean(self.holes):7.3f} "
-            f"{self.things:6} {len(self.labels):6} {self.missed:6} {self.tasks:5} {self.flown:5} {self.flown_of_more:5}"
+            f"{self.things:6} {len(self.labels):6} {self.missed:6} "
+            f"{self.tasks!s:>5} {self.flown!s:>5} {self.flown_of_more!s:>5}"
         )
 
 
@@ -105,17 +107,24 @@ def main() -> None:
         pictures.append(strip)
     if options.sheet:
         write_sheet(pictures, [row.name for row in rows], options.sheet)
-    summarise(rows, options.flights)
+    summarise(rows)
 
 
 def once(description: SceneDescription, options: argparse.Namespace) -> tuple[Row, np.ndarray]:
-    """A scene's figures and strip of pictures: from the results folder, else made and written there."""
+    """A scene's figures and strip of pictures: what the results folder lacks of them is made and written there."""
     figures, picture = (options.results / f"{description.scene}.{kind}" for kind in ("json", "png"))
+    made = None
     if not figures.exists():
-        row, strip = scene(description, options)
+        made = build(description, options.gaussians)
+        row, strip = look_at(description, made, options.references)
         cv2.imwrite(str(picture), strip[:, :, ::-1])
         figures.write_text(json.dumps(asdict(row)))
-    return Row(**json.loads(figures.read_text())), cv2.imread(str(picture))[:, :, ::-1]
+    row = Row(**json.loads(figures.read_text()))
+    if options.flights and row.tasks is None:
+        made = made or build(description, options.gaussians)
+        row.tasks, row.flown, row.flown_of_more = fly(made.world, made.assembly.truth)
+        figures.write_text(json.dumps(asdict(row)))
+    return row, cv2.imread(str(picture))[:, :, ::-1]
 
 
 def descriptions(count: int) -> list[SceneDescription]:
@@ -130,19 +139,34 @@ def descriptions(count: int) -> list[SceneDescription]:
     return result
 
 
-def scene(description: SceneDescription, options: argparse.Namespace) -> tuple[Row, np.ndarray]:
+@dataclass
+class Made:
+    """One scene, built, and what that took."""
+
+    assembly: Assembly
+    world: LitWorld
+    seconds: float
+    megabytes: float
+
+
+def build(description: SceneDescription, gaussians: int) -> Made:
     began = time.process_time()
     assembly = assemble(description)
-    world = lit_world(assembly, options.gaussians)
+    world = lit_world(assembly, gaussians)
     seconds = time.process_time() - began
-    truth = assembly.truth
+    return Made(assembly, world, seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
+
+
+def look_at(description: SceneDescription, made: Made, references: int) -> tuple[Row, np.ndarray]:
+    """A scene's figures but for its flights, and its picture and drone views side by side."""
+    truth, world = made.assembly.truth, made.world
     cameras = drone_views(truth, np.random.default_rng(len(truth.objects)))
     views = list(CpuRasterizer().render(world.cloud, cameras))
     row = Row(
         f"{description.scene} {description.category}: {description.subcategory}",
-        assembly.place.open_air,
-        seconds,
-        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        made.assembly.place.open_air,
+        made.seconds,
+        made.megabytes,
         len(world.cloud),
         *([], []),
         [float((v.alpha < 0.5).mean()) for v in views],
@@ -150,13 +174,10 @@ def scene(description: SceneDescription, options: argparse.Namespace) -> tuple[R
         sorted({f"{o.colour} {o.material} {o.noun}" for o in truth.objects}),
         sum(u.count for u in truth.unplaced),
     )
-    compare(world, cameras[: options.references], views, row)
-    if options.flights:
-        row.tasks, row.flown, row.flown_of_more = fly(world, truth)
+    compare(world, cameras[:references], views, row)
     picture = best_view(world.cloud, truth, CpuRasterizer())
-    return row, np.concatenate(
-        [cv2.resize(picture, SIZE, interpolation=cv2.INTER_AREA), *(v.rgb for v in views)], axis=1
-    )
+    strip = [cv2.resize(picture, SIZE, interpolation=cv2.INTER_AREA), *(v.rgb for v in views)]
+    return row, np.concatenate(strip, axis=1)
 
 
 def drone_views(truth: WorldTruth, rng: np.random.Generator) -> list[Camera]:
@@ -240,8 +261,8 @@ def write_sheet(strips: list[np.ndarray], names: list[str], path: Path) -> None:
     path.write_bytes(data.tobytes())
 
 
-def summarise(rows: list[Row], flights: bool) -> None:
-    def told(name: str, values: list[float], form: str = "{:.2f}") -> None:
+def summarise(rows: list[Row]) -> None:
+    def told(name: str, values: Sequence[float], form: str = "{:.2f}") -> None:
         if values:
             told = (form.format(f(values)) for f in (np.mean, np.median, min, max))
             print("{:26} mean {:>9}  median {:>9}  least {:>9}  most {:>9}".format(name, *told))
@@ -259,11 +280,12 @@ def summarise(rows: list[Row], flights: bool) -> None:
     told("instances", [r.things for r in rows], "{:.0f}")
     told("not placed", [r.missed for r in rows], "{:.0f}")
     print(f"{'distinct labels in all':26} {len({label for r in rows for label in r.labels})}")
-    if flights:
-        told("flights, N_s = 20", [r.flown for r in rows], "{:.0f}")
-        told(f"flights, N_s = {MORE_SETS}", [r.flown_of_more for r in rows], "{:.0f}")
-        for name, flown in (("20", [r.flown for r in rows]), (str(MORE_SETS), [r.flown_of_more for r in rows])):
-            print(f"scenes with >= 100 flights, N_s = {name}: {sum(f >= 100 for f in flown)} of {len(rows)}")
+    for name, flown in (
+        (f"N_s = {SETTINGS.tasks.sets}", [r.flown for r in rows if r.flown is not None]),
+        (f"N_s = {MORE_SETS}", [r.flown_of_more for r in rows if r.flown_of_more is not None]),
+    ):
+        told(f"flights, {name}", flown, "{:.0f}")
+        print(f"scenes with >= 100 flights, {name}: {sum(f >= 100 for f in flown)} of {len(flown)}")
 
 
 if __name__ == "__main__":
