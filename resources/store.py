@@ -22,7 +22,7 @@ import socket
 import tempfile
 import time
 import uuid
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -220,7 +220,7 @@ class Store:
             (staged.folder / PREVIEW_NAME).write_bytes(preview)
         target = self._product(record.asset, record.scene)
         if self.is_local:
-            _move_folder(staged.folder, Path(str(target / record.digest)))
+            _move_folder(staged, Path(str(target / record.digest)))
         else:
             names = [*staged.files, PREVIEW_NAME] if preview is not None else list(staged.files)
             for name in names:
@@ -385,22 +385,27 @@ def is_used(staging: str) -> bool:
     return host == socket.gethostname() and is_alive(process)
 
 
-def _move_folder(source: Path, target: Path) -> None:
-    """Move a complete folder into place. One that is already there has the same bytes: names are content hashes."""
-    for path in source.rglob("*"):
+def _move_folder(staged: Staged, target: Path) -> None:
+    """Move a complete folder into place, unless the same bytes are there: somebody may be reading them just now."""
+    for path in staged.folder.rglob("*"):
         if path.is_file():
             with path.open("rb") as file:
                 os.fsync(file.fileno())
     target.parent.mkdir(parents=True, exist_ok=True)
     try:
-        source.rename(target)
+        staged.folder.rename(target)
     except OSError:
         if not target.is_dir():
             raise
-        replaced = source.parent / "replaced"  # a torn copy may lie there: always put the fresh one
-        target.rename(replaced)
-        source.rename(target)
+        if _holds(target, staged.files):
+            return
+        target.rename(staged.folder.parent / "replaced")  # a torn copy
+        staged.folder.rename(target)
     _sync_folder(target.parent)
+
+
+def _holds(folder: Path, files: Mapping[str, FileEntry]) -> bool:
+    return all((folder / name).is_file() and sha256_of(folder / name) == entry.sha256 for name, entry in files.items())
 
 
 def _upload(source: Path, target: UPath) -> None:

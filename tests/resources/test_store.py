@@ -80,6 +80,18 @@ def test_the_same_content_has_the_same_digest_and_can_be_committed_twice(store: 
     assert (store.folder("notes", "flat") / "note.txt").read_text() == "same"
 
 
+def test_a_product_that_somebody_reads_stays_where_it_is_when_it_is_committed_again(tmp_path: Path) -> None:
+    store = open_store(str(tmp_path))
+    commit(store, "same")
+    folder = store.folder("notes", "flat")
+    before = folder.stat().st_ino
+    commit(store, "same")
+    assert folder.stat().st_ino == before
+    (folder / "note.txt").write_text("SAME")  # other bytes of the same length
+    commit(store, "same")
+    assert (folder / "note.txt").read_text() == "same"
+
+
 def test_the_preview_is_beside_the_product_but_not_in_its_hash(store: Store) -> None:
     record = commit(store, "hello")
     assert PREVIEW_NAME not in record.files
