@@ -15,6 +15,7 @@ the real ones. The night's schedule ticks every minute, and every tick means the
 import argparse
 import contextlib
 import functools
+import json
 import os
 import shutil
 import signal
@@ -22,10 +23,12 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
+from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -49,11 +52,28 @@ ROLES = {
 """What is killed: processes of the night with this in their command line."""
 
 
+def told_to(messages: list[dict[str, str]]) -> str:
+    """The URL of a webhook on loopback that appends what it is told."""
+
+    class Hook(BaseHTTPRequestHandler):
+        def do_POST(self) -> None:
+            messages.append(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
+            self.send_response(204)
+            self.end_headers()
+
+        def log_message(self, *_: object) -> None: ...
+
+    server = HTTPServer(("127.0.0.1", 0), Hook)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    return f"http://127.0.0.1:{server.server_port}/"
+
+
 class Night:
     """A project whose schedules run under `dagster dev`."""
 
     def __init__(self, folder: Path, scenes: int, seconds: float) -> None:
         self.folder, self.scenes = folder, scenes
+        self.told: list[dict[str, str]] = []
         self.home, self.clock = folder / ".flymirage" / "dagster", folder / "clock"
         folder.mkdir()
         self.clock.write_text("+0")
@@ -62,6 +82,7 @@ class Night:
         (folder / "flymirage.toml").write_text(
             f"[growth]\nnightly = true\nscenes_per_night = {scenes}\nmin_free_gb = 0\n"
             f'cron = "* * * * *"\nsweep_cron = "{morning:%M %H * * *}"\n'
+            f'[operation]\nwebhook_url = "{told_to(self.told)}"\n'
         )
         (folder / "workspace.yaml").write_text("load_from:\n  - python_module: {module_name: stand_in_definitions}\n")
         self.environment = {
@@ -226,6 +247,7 @@ def watch(night: Night, event: str, limit: float) -> None:
         done = night.wait(lambda: night.finished() >= len(night.known()), limit)
         took = time.monotonic() - started
         quiet = night.wait(lambda: not any(night.runs()[status.value] for status in UNFINISHED), 240)
+        night.wait(lambda: len(night.told) >= night.runs()["FAILURE"], 90)
     finally:
         night.kill("everything")
     found, whole = night.known(), undisturbed(night.folder / "calm", night.known())
@@ -235,6 +257,7 @@ def watch(night: Night, event: str, limit: float) -> None:
         f"the night's {night.scenes} scenes and no others: {found == night.keys}; hashes equal: {equal} of {len(found)}"
     )
     print(f"no run is left unfinished: {quiet}; runs: {dict(night.runs())}")
+    print(f"told to the webhook: {[(m['event'], m['scene'], m['error'][:80]) for m in night.told]}")
 
 
 def main() -> None:
