@@ -29,7 +29,9 @@ BULKY: Final = 0.4
 WELL_SEEN: Final = 24
 """... and so many views saw it: that is a thing, though perhaps a new one."""
 NEAR_ENOUGH: Final = 3.0
-"""Metres; what no view saw from so near is not judged: from afar everything looks like a left-over."""
+"""Metres; what no view saw from so near, as in the first pass, is judged more gently."""
+MAX_LEFT_OVER_AFAR: Final = 0.9
+"""The probability from which that is dropped."""
 LEAST_UNNAMED: Final = (0.10, 0.15)
 """Metres: least thickness (but flat on a wall) and least second longest side of a thing that nobody has a name for;
 what is thinner is a slat, a frame, a strip."""
@@ -61,9 +63,11 @@ def named(things: Sequence[Observation], votes: Sequence[Vote | None]) -> list[N
 
 
 def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
-    """Whether a box is an object: what the detector knows is; what looks like a left-over from near is not."""
-    if name.source == "detector" or seen.nearest > NEAR_ENOUGH:
+    """Whether a box is an object: what the detector knows is; what looks like a left-over is not."""
+    if name.source == "detector":
         return True
+    if seen.nearest > NEAR_ENOUGH:
+        return name.left_over < MAX_LEFT_OVER_AFAR
     thin, second, longest = sorted(box.size)
     bulky = thin >= BULKY and seen.views >= WELL_SEEN
     if name.noun in BUILDING or (name.left_over >= MAX_LEFT_OVER and not bulky):

@@ -171,10 +171,11 @@ def seen(nearest: float = 1.0, views: int = 9) -> Detections:
     return Detections(views, nearest, np.zeros(0, int))
 
 
-def test_what_looks_like_a_left_over_from_near_is_dropped_unless_the_detector_knows_it():
-    assert not is_believed(box(0), name(left_over=0.9), seen())
+def test_what_looks_like_a_left_over_is_dropped_unless_the_detector_knows_it_and_more_gently_from_afar():
+    assert not is_believed(box(0), name(left_over=0.85), seen())
     assert is_believed(box(0), name("chair", "detector", 0.9), seen())
-    assert is_believed(box(0), name(left_over=0.9), seen(4.0))
+    assert is_believed(box(0), name(left_over=0.85), seen(4.0))
+    assert not is_believed(box(0), name(left_over=0.95), seen(4.0))
     assert is_believed(box(0), name(left_over=0.9), seen(views=30))  # bulky and seen from everywhere
 
 
