@@ -1,6 +1,6 @@
 """Generated worlds, measured: splats against the ray-traced mesh, cost, content, and whether they can be flown in.
 
-    python benchmarks/worlds.py [--scenes 30] [--results worlds-results] [--sheet docs/worlds.jpg] [--no-flights]
+    python benchmarks/worlds.py [--scenes 30] [--results data/worlds] [--sheet docs/worlds.jpg] [--no-flights]
 
 Scenes are drawn from all categories in turn. For each: PSNR and SSIM of an unseen drone view (the middle 480 x 360 of
 640 x 480 pixels) against the mesh
@@ -92,7 +92,7 @@ def main() -> None:
     parser.add_argument("--scenes", type=int, default=30)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--gaussians", type=int, default=SETTINGS.generation.gaussians)
-    parser.add_argument("--results", type=Path, default=Path("worlds-results"))
+    parser.add_argument("--results", type=Path, default=Path("data/worlds"))
     parser.add_argument("--sheet", type=Path)
     parser.add_argument("--flights", action=argparse.BooleanOptionalAction, default=True)
     parser.add_argument("--references", type=int, default=1, help="drone views a scene that are also ray-traced")
