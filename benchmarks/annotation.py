@@ -15,6 +15,7 @@ import json
 import math
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -51,7 +52,9 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "annotation"))
 
 MIN_TRUE_SIZE = 0.2  # metres: smaller true objects are not counted as missed
 PIXEL_STEP = 4  # every fourth pixel, both ways, is looked at
-SURFEL_SPACING = 0.04  # metres between the surfels over which a true object's colour is taken
+SURFEL_SPACING = 0.04  # metres between the surfels, and edge of the cells, by which a true object's colour is taken
+COLOUR_SAMPLES = 500  # of those cells are asked for their colour
+MIN_COLOUR_SHARE = 1 / 3
 MIN_TRUE_PIXELS = 150  # over all views within d_th1 of its centre
 
 
@@ -66,7 +69,7 @@ class Scene:
     truth: Sequence[Any]  # boxes with centre, size, yaw; empty if unknown
     openings: Sequence[np.ndarray] = ()  # (2, 3) corners of windows and doors: boxes there are neither right nor wrong
     category: str = ""
-    surface_colour: Callable[[Any], str] = lambda thing: ""  # of a true object: `colour_of_surface`
+    surface_colours: Callable[[Any], Counter[str]] = lambda thing: Counter()  # of a true object: `colours_of_surface`
 
 
 @dataclass(frozen=True)
@@ -184,7 +187,7 @@ def described(description: Any, settings: Settings) -> Scene:
         "truth": truth.objects,
         "openings": [np.array(opening) for opening in truth.openings],
         "category": f"{description.category} / {description.subcategory}",
-        "surface_colour": lambda thing: colour_of_surface(thing, description.scene),
+        "surface_colours": lambda thing: colours_of_surface(thing, description.scene),
     }
     return splat_scene(description.scene, world.cloud, world.centre, settings, **known)
 
@@ -223,50 +226,68 @@ def measured(scene: Scene, seen: Seen, second: BoxMap, settings: Settings) -> di
         row[f"judged_{name}"] = loose.judged
         row |= {f"R50_{name}": strict.recall, f"P50_{name}": strict.precision}
     pairs = [(scene.truth[t], second.boxes[b]) for t, b, _ in score_boxes(second.boxes, scene.truth, 0.25)]
-    return row | names_and_colours([(t, b) for t, b in pairs if hasattr(t, "noun")], scene.surface_colour)
+    return row | names_and_colours([(t, b) for t, b in pairs if hasattr(t, "noun")], scene.surface_colours)
 
 
-def names_and_colours(pairs: Sequence[tuple[Any, Any]], surface_colour: Callable[[Any], str]) -> dict[str, int]:
+def names_and_colours(
+    pairs: Sequence[tuple[Any, Any]], surface_colours: Callable[[Any], Counter[str]]
+) -> dict[str, int]:
     """Counts over matched (true object, box) pairs; a family's name is the last word of the true noun.
 
-    ``colour``: right by the colour of most of the thing's surface; ``paint``: by the paint that the generator names.
+    ``colour``: the seen word may be used for `MIN_COLOUR_SHARE` of what is seen of the thing; ``paint``: it may be used
+    for the paint that the generator names.
     """
     right = sum(b.label == t.noun for t, b in pairs)
     family = sum(b.label != t.noun and b.label == t.noun.split()[-1] for t, b in pairs)
     generic = sum(b.label == UNKNOWN for _, b in pairs)
     paint = sum(coloured(colour_of_paint(t.colour), b.colour) is not Truth.NO for t, b in pairs)
-    colour = sum(coloured(surface_colour(t), b.colour) is not Truth.NO for t, b in pairs)
+    colour = sum(share_called(b.colour, surface_colours(t)) >= MIN_COLOUR_SHARE for t, b in pairs)
     counts = {"matched": len(pairs), "noun": right, "family": family, "generic": generic}
     return counts | {"colour": colour, "paint": paint}
+
+
+def share_called(seen: str, colours: Counter[str]) -> float:
+    """The share of ``colours`` for which the ``seen`` word may be used."""
+    called = sum(count for name, count in colours.items() if coloured(name, seen) is not Truth.NO)
+    return called / max(colours.total(), 1)
 
 
 def colour_of_paint(paint: str) -> str:
     """The basic name of a paint's own colour; `coloured` says whether the seen name may be used for it."""
     from flymirage_core.worldgen.colours import linear_rgb
 
-    return _name_of_linear(np.array([linear_rgb(paint)]), np.ones(1))
+    return _names_of_linear(np.array([linear_rgb(paint)]))[0]
 
 
-def colour_of_surface(thing: Any, scene: str) -> str:
-    """The basic name of a true object's colour in white light: the median over all of its surface, leaves and all.
+def colours_of_surface(thing: Any, scene: str) -> Counter[str]:
+    """How much of what is seen of a true object from outside has which basic colour, in white light.
 
-    A plant's paint is its pot's, a picture's its frame's; this is what one would say of the whole.
+    From above and from all sides; of what is on a wall, from the front. A plant's paint is its pot's, a picture's its
+    frame's; this is what one may say of the whole.
     """
     from flymirage_core.worldgen.assembly import object_parts
     from flymirage_core.worldgen.surfaces import Surfels, surfels_of
 
     surfels = Surfels.joined([surfels_of(part, SURFEL_SPACING) for part in object_parts(thing, scene)])
-    return _name_of_linear(surfels.albedo, surfels.areas)
+    away = surfels.points - np.array(thing.centre)
+    local = np.column_stack([away[:, :2] @ thing.axes.T, away[:, 2]])  # (N, 3), y to the front
+    sides = [(1, 1)] if thing.placement == "on_wall" else [(0, 1), (0, -1), (1, 1), (1, -1), (2, 1)]
+    seen = np.concatenate([_met_first(local, axis, sign) for axis, sign in sides])
+    return Counter(_names_of_linear(surfels.albedo[seen[:: max(1, len(seen) // COLOUR_SAMPLES)]]))
 
 
-def _name_of_linear(linear: np.ndarray, areas: np.ndarray) -> str:
-    """The name of the median, by area (N,), of linear RGB colours (N, 3)."""
+def _met_first(points: np.ndarray, axis: int, sign: int) -> np.ndarray:
+    """Indices of the points (N, 3) farthest along ``sign`` times an axis, one for each cell of the other two."""
+    cells = np.floor(np.delete(points, axis, axis=1) / SURFEL_SPACING).astype(int)  # (N, 2)
+    order = np.lexsort((-sign * points[:, axis], cells[:, 1], cells[:, 0]))
+    first = np.append(True, (np.diff(cells[order], axis=0) != 0).any(axis=1))
+    return order[first]
+
+
+def _names_of_linear(linear: np.ndarray) -> list[str]:
+    """The names of linear RGB colours (N, 3)."""
     srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0) ** (1 / 2.4) - 0.055)
-    lab = to_lab(255 * np.clip(srgb, 0, 1))
-    order = np.argsort(lab, axis=0)
-    share = np.cumsum(areas[order], axis=0) / areas.sum()  # (N, 3)
-    middle = (share < 0.5).sum(axis=0)
-    return colour_name(lab[order[middle, range(3)], range(3)])
+    return [colour_name(lab) for lab in to_lab(255 * np.clip(srgb, 0, 1))]
 
 
 def prototype_figures(path: Path, scene: Scene, seen: Seen, settings: Settings) -> dict[str, float]:
