@@ -5,7 +5,6 @@
     python benchmarks/crash_nights.py worker         # the process of the run
     python benchmarks/crash_nights.py everything     # daemon, web server, code server, worker at once
     python benchmarks/crash_nights.py two-daemons    # a second daemon on the same instance, all night
-    python benchmarks/crash_nights.py clock          # the clock a day ahead, then back (needs libfaketime)
     python benchmarks/crash_nights.py calm           # nothing happens; the morning's report
 
 Stages are stand-ins (tests/stand_in.py) that take a while; schedule, daemon, queue, code server, workers and store are
@@ -41,8 +40,6 @@ from flymirage_assets.report import SCENE_PRODUCTS  # noqa: E402
 from flymirage_assets.runs import UNFINISHED, run_scene  # noqa: E402
 from resources.records import SceneOrigin  # noqa: E402
 
-DAY = 86_400
-FAKETIME = Path("/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1")
 ROLES = {
     "daemon": "dagster._daemon",
     "code-server": "code-server start",
@@ -74,9 +71,8 @@ class Night:
     def __init__(self, folder: Path, scenes: int, seconds: float) -> None:
         self.folder, self.scenes = folder, scenes
         self.told: list[dict[str, str]] = []
-        self.home, self.clock = folder / ".flymirage" / "dagster", folder / "clock"
+        self.home = folder / ".flymirage" / "dagster"
         folder.mkdir()
-        self.clock.write_text("+0")
         self.night = datetime.now(UTC)
         morning = self.night + timedelta(minutes=4)
         (folder / "flymirage.toml").write_text(
@@ -108,18 +104,6 @@ class Night:
 
     def start_another_daemon(self) -> None:
         self._spawn("-m", "dagster._daemon", "run", "-w", "workspace.yaml")
-
-    def under_faketime(self) -> None:
-        """Everything that is started from now on sees the clock of `set_clock`."""
-        self.environment |= {
-            "LD_PRELOAD": str(FAKETIME),
-            "FAKETIME_TIMESTAMP_FILE": str(self.clock),
-            "FAKETIME_NO_CACHE": "1",
-            "FAKETIME_DONT_FAKE_MONOTONIC": "1",
-        }
-
-    def set_clock(self, ahead: int) -> None:
-        self.clock.write_text(f"{ahead:+d}")
 
     def kill(self, role: str) -> int:
         """SIGKILL every process of the night that plays ``role``; how many these were."""
@@ -196,16 +180,6 @@ def two_daemons(night: Night) -> None:
     night.start_another_daemon()
 
 
-def clock(night: Night) -> None:
-    """A day ahead, and back: each while a run is going on."""
-    for ahead in (DAY, 0):
-        before = night.finished()
-        night.wait(lambda: night.finished() > before and night.runs()["STARTED"] > 0, 300)  # noqa: B023
-        night.set_clock(ahead)
-        print(f"    clock {ahead:+d} s with {night.finished()} scenes finished", flush=True)
-        time.sleep(20)
-
-
 def calm(night: Night) -> None:
     """Nothing happens; the morning's report is printed."""
     night.wait(lambda: night.report() is not None, 600)
@@ -215,7 +189,6 @@ def calm(night: Night) -> None:
 EVENTS: dict[str, Callable[[Night], None]] = {
     **{role: functools.partial(kill, role=role) for role in ROLES},
     "two-daemons": two_daemons,
-    "clock": clock,
     "calm": calm,
 }
 
@@ -236,8 +209,6 @@ def undisturbed(folder: Path, keys: list[str]) -> dict[str, dict[str, str]]:
 
 def watch(night: Night, event: str, limit: float) -> None:
     """Let the night happen, and print what came of it."""
-    if event == "clock":
-        night.under_faketime()
     started = time.monotonic()
     night.start()
     try:

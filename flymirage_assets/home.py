@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import dagster as dg
+from filelock import FileLock
 
 from flymirage_assets.pools import POOL_LIMITS
 from resources.processes import is_alive, this_process
@@ -19,10 +20,16 @@ def prepare_home() -> Path:
     """The DAGSTER_HOME of this project (the environment's, else ``.flymirage/dagster`` here), with its dagster.yaml."""
     home = Path(os.environ.get("DAGSTER_HOME", ".flymirage/dagster")).resolve()
     home.mkdir(parents=True, exist_ok=True)
-    if not (home / "dagster.yaml").exists():
-        shutil.copyfile(Path(__file__).with_name("dagster.yaml"), home / "dagster.yaml")
+    with opening(home):
+        if not (home / "dagster.yaml").exists():
+            shutil.copyfile(Path(__file__).with_name("dagster.yaml"), home / "dagster.yaml")
     os.environ["DAGSTER_HOME"] = str(home)
     return home
+
+
+def opening(home: Path) -> FileLock:
+    """One process at a time: two cannot create Dagster's databases at once."""
+    return FileLock(home / "opening.lock")
 
 
 def process_tags() -> dict[str, str]:

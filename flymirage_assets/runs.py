@@ -5,14 +5,14 @@ import time
 import uuid
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
 import dagster as dg
 
 from flymirage_assets.failures import STOPS_GROWTH
-from flymirage_assets.home import close_dead_runs, limit_pools, prepare_home, process_tags
+from flymirage_assets.home import close_dead_runs, limit_pools, opening, prepare_home, process_tags
 from flymirage_assets.stage import scenes
 from flymirage_core.errors import FlyMirageError
 from flymirage_core.settings import Settings
@@ -41,12 +41,13 @@ class RunOutcome:
 @contextmanager
 def dagster_instance() -> Iterator[dg.DagsterInstance]:
     """The instance that the UI shows, freed of runs whose process was killed, with its pools' limits set."""
-    prepare_home()
     warnings.filterwarnings("ignore", module="dagster")
     logging.getLogger("alembic").setLevel(logging.WARNING)
-    with dg.DagsterInstance.get() as instance:
-        close_dead_runs(instance)
-        limit_pools(instance)
+    with ExitStack() as stack:
+        with opening(prepare_home()):
+            instance = stack.enter_context(dg.DagsterInstance.get())
+            close_dead_runs(instance)
+            limit_pools(instance)
         yield instance
 
 

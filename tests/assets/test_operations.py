@@ -2,6 +2,7 @@
 
 import errno
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, date, datetime
 from pathlib import Path
 
@@ -160,6 +161,12 @@ def test_rebuild_says_why_and_touches_what_the_change_touches_and_the_way_back_i
     assert "✓ trajectories" in ran and "✓ frames" in ran and "✓ world" not in ran and "✓ boxes" not in ran
     back = flymirage(tmp_path, "rebuild")
     assert "made so before" in back and "✓" not in back
+
+
+def test_two_first_commands_at_once_make_one_home(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(2) as both:
+        homes = set(both.map(lambda _: flymirage(tmp_path, "home"), range(2)))
+    assert homes == {f"{tmp_path}/.flymirage/dagster\n"}
 
 
 def test_removing_a_scene_leaves_nothing_of_it(tmp_path: Path) -> None:

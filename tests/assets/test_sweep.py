@@ -64,6 +64,15 @@ def test_a_tick_that_died_is_asked_for_again_with_the_same_run_keys(sweeper: Swe
     assert [r.run_key for r in sweeper.tick(MORNING)] == first
 
 
+def test_a_clock_that_jumps_a_day_ahead_and_back_asks_for_no_run_twice(sweeper: Sweeper) -> None:
+    def keys_at(morning: datetime) -> list[str | None]:
+        return [request.run_key for _ in range(4) for request in sweeper.tick(morning)]
+
+    sweeper.tick(NIGHT)
+    first, ahead, back = keys_at(MORNING), keys_at(NEXT_MORNING), keys_at(MORNING)
+    assert back == first and not set(first) & set(ahead)  # Dagster starts one run for each run key
+
+
 @pytest.mark.parametrize(
     ("process", "asked"), [(this_process(), [KEYS[0], KEYS[2]]), ("1-7-gone", [KEYS[0], KEYS[1], KEYS[2]])]
 )
