@@ -166,6 +166,16 @@ def test_scenes_are_listed_and_their_origin_is_read_back(store: Store) -> None:
     assert store.origin("nobody") is None
 
 
+def test_a_scene_has_all_products_once_the_pointer_of_the_last_one_is_there(store: Store) -> None:
+    for asset, scene in (("world", "a"), ("prompts", "a"), ("world", "b")):
+        commit(store, "text", asset, scene)
+    begun = store.base / "products/prompts/b/0123"
+    begun.mkdir(parents=True)
+    (begun / "note.txt").write_text("text")  # its writer was killed here
+    assert store.scenes_with_all(("world", "prompts")) == ["a"]
+    assert store.knows("a") is False  # neither registered nor described
+
+
 def test_a_scene_that_was_only_typed_in_the_ui_is_listed_too(store: Store) -> None:
     commit(store, "hello", asset="description", scene="typed")
     assert store.scenes() == ["typed"]
