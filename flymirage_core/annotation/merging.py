@@ -40,10 +40,6 @@ JOINT_GAP: Final = 0.10
 MIN_JOINT_POINTS: Final = 3
 LARGE: Final = 1.0
 """Metres; two things that are both longer are never bridged."""
-MIN_TWIN: Final = 0.2
-"""Metres of the shortest side of things that stand in a row; smaller ones may be legs."""
-ALIKE: Final = 0.75
-"""Share of each other's sides from which two are equally large."""
 MAX_ABSORBED: Final = 0.34
 """Metres; larger pieces are not swallowed by what is round them: books in a shelf are, a chair under a table is not."""
 STACK_DEPTH: Final = 0.12
@@ -139,14 +135,7 @@ def _stands_on(upper: Part, lower: Part) -> bool:
 
 def _same_thing(a: Part, b: Part, step: float, contact: int, kept_apart: bool) -> bool:
     touching = contact >= max(MIN_CONTACT, MIN_CONTACT_SHARE * min(len(a), len(b)))
-    return step < SAME_COLOUR and touching and not kept_apart and not _twins(a, b)
-
-
-def _twins(a: Part, b: Part) -> bool:
-    """Two of a kind side by side on the floor, as bins and cones stand in rows: equally large, and large enough."""
-    smaller, larger = np.minimum(a.extent, b.extent), np.maximum(a.extent, b.extent)
-    on_floor = max(a.clearance, b.clearance) <= FOOT_CLEARANCE
-    return bool(on_floor and smaller.min() > MIN_TWIN and (smaller > ALIKE * larger).all())
+    return step < SAME_COLOUR and touching and not kept_apart
 
 
 def _piece_inside(a: Part, b: Part, stands: bool, upper: Part) -> bool:
@@ -249,7 +238,7 @@ def _nearly_touching(a: Part, b: Part) -> bool:
     gap = np.maximum(0, np.maximum(a.lower - b.upper, b.lower - a.upper))
     if a.thing != b.thing or np.linalg.norm(gap) > JOINT_GAP or colour_step(a.colour, b.colour) > SIMILAR_COLOUR:
         return False
-    if min(a.footprint.size.max(), b.footprint.size.max()) > LARGE or _twins(a, b):
+    if min(a.footprint.size.max(), b.footprint.size.max()) > LARGE:
         return False
     lower, upper = (a, b) if a.centre[2] < b.centre[2] else (b, a)
     area, height = lower.table
