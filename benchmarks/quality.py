@@ -46,6 +46,8 @@ GATES = {
 """What is there to find each damage."""
 LOW_IS_BAD = ("alpha_coverage", "contrast", "darkness", "target_visible", "target_size", "progress", "clearance")
 SPLITS = 20
+LENIENCE = 0.75
+"""Of the way from the worst good flight to the least damaged: few scenes do not show how dark a good one can be."""
 JUDGE = MeasuredJudge(VerdictSettings())
 Row = dict[str, Any]
 Thresholds = dict[str, float]
@@ -199,14 +201,15 @@ def calibrated(rows: list[Row]) -> Thresholds:
 
 
 def suggested(gate: str, good: np.ndarray, hurt: np.ndarray) -> float:
-    """Where the shares of good flights passed and of damaged ones found add up to most: the middle of that gap."""
+    """Where the shares of good flights passed and of damaged ones found add up to most: `LENIENCE` into that gap."""
     sign = -1.0 if gate in LOW_IS_BAD else 1.0
     g, h = np.sort(sign * good), np.sort(sign * hurt)
     marks = np.unique(np.concatenate([g, h]))
-    middles = (marks[:-1] + marks[1:]) / 2 if len(marks) > 1 else marks
-    gain = np.searchsorted(g, middles, side="right") / len(g) - np.searchsorted(h, middles, side="right") / len(h)
-    best = middles[gain >= gain.max() - 1e-9]
-    return float(sign * best[len(best) // 2])
+    low, high = (marks[:-1], marks[1:]) if len(marks) > 1 else (marks, marks)
+    middle = (low + high) / 2
+    gain = np.searchsorted(g, middle, side="right") / len(g) - np.searchsorted(h, middle, side="right") / len(h)
+    best = np.flatnonzero(gain >= gain.max() - 1e-9)
+    return float(sign * (low[best[0]] + LENIENCE * (high[best[-1]] - low[best[0]])))
 
 
 def gate_figures(clean: list[Row], hurt: list[Row], damage: str, thresholds: Thresholds) -> tuple[float, float]:

@@ -43,6 +43,10 @@ LEAST_LANDMARK = 0.3
 """Metres: a thing whose longest side is shorter is too small to steer by."""
 NAMELESS_COST = 1.5
 """Metres by which a landmark without a name must be nearer to be preferred."""
+UNSURE_COST = 1.5
+"""Metres for a label of no certainty at all: what may not be a pump is a poor thing to steer by."""
+MANY_COLOURED = ("painting", "poster", "picture", "mirror", "window", "tapestry", "bookshelf", "bookcase")
+"""Head nouns of things whose one measured colour is a mean of many, or of what they reflect."""
 VARIETY = 3
 """Among this many best unambiguous phrases one is drawn, so that not all prompts use the same relation."""
 MOST_TRIED = 600
@@ -132,8 +136,10 @@ class _Description:
         self.noun = Noun(UNNAMED if self.nameless else target.label)
         self.sides: list[Term] = [s for side in Side if self._holds(s := Located(side))]
         self.looks = _looks(target)
-        by_size = BY_SIZE[:3] if self.nameless else BY_SIZE
-        self.sizes: list[Term] = [*(Most(by) for by in by_size), *(Sized(size) for size in Size)]
+        largest: list[Term] = [Most(by) for by in (BY_SIZE[:3] if self.nameless else BY_SIZE)]
+        sized: list[Term] = [Sized(size) for size in Size]
+        # Of a thing without a name the largest is looked for among all things, seen or not: when nothing else is left.
+        self.sizes, self.last_sizes = (sized, largest) if self.nameless else ([*largest, *sized], [])
         self._place_list: list[Term] | None = None
 
     def object_centred(self) -> Iterator[Meaning]:
@@ -149,6 +155,7 @@ class _Description:
         yield from _with(kernels, self.sides)
         yield from _with(kernels, ranks)
         yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
+        yield from _with(kernels, self.last_sizes)
 
     def relative(self) -> Iterator[Meaning]:
         """The noun with a relation to the most sensible landmarks; refined by looks, a side, or a second relation."""
@@ -168,7 +175,11 @@ class _Description:
         """Always something seen on the thing: colour, material, shape, then size among its like, or a side as well."""
         pairs = [pair for pair in combinations(self.looks, 2) if type(pair[0]) is not type(pair[1])]
         looks: list[Terms] = [*((look,) for look in self.looks), *pairs]
-        kernels: list[Terms] = [(*look, self.noun) for look in looks]
+        guessed = [look for look in looks if any(isinstance(term, Material) for term in look)]
+        for kernels in ([look for look in looks if look not in guessed], guessed):
+            yield from self._seen([(*look, self.noun) for look in kernels])
+
+    def _seen(self, kernels: list[Terms]) -> Iterator[Meaning]:
         yield from (Meaning(kernel) for kernel in kernels)
         yield from _with(kernels, self.sizes)
         yield from _with(kernels, self.sides)
@@ -178,6 +189,7 @@ class _Description:
         yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
         ranks: list[Term] = [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
         yield from _with(kernels, ranks)
+        yield from _with(kernels, self.last_sizes)
 
     def _shapes(self) -> list[Term]:
         return [look for look in self.looks if isinstance(look, Shaped)]
@@ -207,21 +219,32 @@ class _Description:
             if box is self.target or gap > LANDMARK_REACH or max(box.size) < LEAST_LANDMARK:
                 continue
             if self.nameless or box.label != self.target.label:
-                cost = gap + 0.5 / max(box.size) + (NAMELESS_COST if is_generic(box.label) else 0.0)
+                cost = gap + 0.5 / max(box.size) + _doubt(box)
                 near.append((cost, box.object_id, box))
         near.sort(key=lambda entry: entry[:2])
         called = ((_landmark_phrase(box, self.resolver), box) for _, _, box in near)
         return list(islice(((m, box) for m, box in called if m is not None), NEAREST_LANDMARKS))
 
 
+def _doubt(box: ObjectBox) -> float:
+    """Metres by which a landmark must be nearer because of what it is called."""
+    return NAMELESS_COST if is_generic(box.label) else UNSURE_COST * (1.0 - box.label_score)
+
+
 def _looks(box: ObjectBox) -> list[Term]:
-    """What is seen on the box itself: colour, material, shapes; of a thing with a name only those it might not have."""
-    looks: list[Term] = [Colour(box.colour)] if box.colour else []
-    looks += [Material(box.material)] if box.material else []
+    """What is seen on the box itself, the surest first: colour, shapes, and the material, which is a guess.
+
+    Of a thing with a name only the shapes that it might not have.
+    """
     shapes = [shape for shape in Shape if shaped(shape, box) is Truth.YES]
     if Shape.SLIM in shapes and Shape.TALL in shapes:
         shapes.remove(Shape.SLIM)
-    return looks + [Shaped(shape) for shape in shapes if is_generic(box.label) or shape in TELLING_SHAPES]
+    telling: list[Term] = [Shaped(s) for s in shapes if is_generic(box.label) or s in TELLING_SHAPES]
+    colours: list[Term] = [Colour(box.colour)] if box.colour else []
+    materials: list[Term] = [Material(box.material)] if box.material else []
+    if box.label.split()[-1] in MANY_COLOURED:
+        return [*telling, *materials, *colours]
+    return [*colours, *telling, *materials]
 
 
 def _landmark_phrase(box: ObjectBox, resolver: Resolver) -> Meaning | None:

@@ -24,7 +24,7 @@ class VerdictSettings(BaseModel):
     """Crete et al.'s blur effect (0 sharp, 1 blurred), median over sampled frames."""
     max_noise: Positive = 3.0
     """Immerkaer's noise estimate, grey levels, median over sampled frames."""
-    min_contrast: Positive = 90.0
+    min_contrast: Positive = 98.0
     """Grey levels between the 5th and the 95th percentile, median over sampled frames: fog leaves little."""
     min_brightness: Positive = 35.0
     """Mean grey level of the darkest sampled frame ..."""

@@ -4,12 +4,13 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 from filmed_room import furnished_room, renamed, scene_products
 
 from flymirage_core.dataset.gallery.gallery import write_gallery
-from flymirage_core.dataset.gallery.scene_view import MOST_SPLATS, visible_splats
+from flymirage_core.dataset.gallery.scene_view import MOST_SPLATS, SH_DC, visible_splats
 from flymirage_core.dataset.gallery.svg_charts import bars
 from flymirage_core.dataset.scene_products import SceneProducts
 from flymirage_core.errors import InputError
@@ -32,6 +33,17 @@ def splats(count: int) -> GaussianCloud:
     return GaussianCloud(*(a.astype(np.float32) for a in arrays))
 
 
+def magenta_floor() -> GaussianCloud:
+    """A colour that nothing else on the page has, all over the floor."""
+    x, y = np.meshgrid(np.linspace(-6, 6, 60), np.linspace(-6, 6, 60))
+    means = np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1)
+    means[:60, 2] = 3.0  # a row of the ceiling, which is left out
+    n = len(means)
+    colour = np.tile((np.array([1.0, 0.0, 1.0]) - 0.5) / SH_DC, (n, 1, 1))
+    arrays = (means, np.tile([0.0, 0.0, 0.0, 1.0], (n, 1)), np.full((n, 3), 0.15), np.full(n, 0.95), colour)
+    return GaussianCloud(*(a.astype(np.float32) for a in arrays))
+
+
 @pytest.fixture(scope="module")
 def cafe(tmp_path_factory: pytest.TempPathFactory) -> SceneProducts:
     return scene_products(tmp_path_factory.mktemp("cafe"))
@@ -41,7 +53,7 @@ def cafe(tmp_path_factory: pytest.TempPathFactory) -> SceneProducts:
 def gallery(cafe: SceneProducts, tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("viser", reason="viser is not installed: pip install 'flymirage[view]'")
     folder = tmp_path_factory.mktemp("gallery") / "out"
-    both = [(scene, lambda: splats(2000)) for scene in (cafe, renamed(cafe, "hall"))]
+    both = [(scene, magenta_floor) for scene in (cafe, renamed(cafe, "hall"))]
     return write_gallery(both, folder).parent
 
 
@@ -53,7 +65,7 @@ def test_every_flight_has_its_video_and_its_prompts(gallery: Path, cafe: ScenePr
     assert all(p.text in page for p in cafe.prompts)
 
 
-def test_a_browser_finds_no_error_and_asks_nobody(gallery: Path) -> None:
+def test_a_browser_draws_it_finds_no_error_and_asks_nobody(gallery: Path, tmp_path: Path) -> None:
     browser = pytest.importorskip("browser", reason="websockets is not installed: it comes with viser")
     if browser.CHROMIUM is None:
         pytest.skip("no chromium on this machine: apt-get install chromium")
@@ -67,8 +79,13 @@ def test_a_browser_finds_no_error_and_asks_nobody(gallery: Path) -> None:
     )
     scene = browser.visit((gallery / "scenes" / "cafe.html").as_uri(), 6, play)
     assert scene.answer == 64  # the video's width: it was decoded
-    world = browser.visit((gallery / "scenes" / "cafe-3d.html").as_uri(), 8, "!!document.querySelector('canvas')")
+    drawn = "!!document.querySelector('canvas')"
+    picture = tmp_path / "world.png"
+    world = browser.visit((gallery / "scenes" / "cafe-3d.html").as_uri(), 8, drawn, picture, size=(640, 480))
     assert world.answer is True
+    blue, green, red = np.moveaxis(cv2.imread(str(picture)), -1, 0)
+    assert ((red > 180) & (green < 130) & (blue > 180)).mean() > 0.05, "the splats are not on the canvas"
+    assert len(np.unique(np.stack([red, green], axis=-1).reshape(-1, 2), axis=0)) > 200, "flights, boxes, pictures"
     for seen in (front, scene, world):
         assert [error for error in seen.errors if not any(own in error for own in VISERS_OWN)] == []
         assert [url for url in seen.requests if not url.startswith(("file:", "data:", "blob:"))] == []

@@ -206,12 +206,14 @@ def test_turning_room_and_drone_together_changes_no_word(seed) -> None:
 
 
 class TestWording:
-    def test_a_green_bookshelf_behind_a_chair_gets_its_three_kinds(self) -> None:
+    def test_a_tall_bookshelf_behind_a_chair_gets_its_three_kinds(self) -> None:
         prompts = written(furnished_room(), 4)
         assert [p.kind for p in prompts] == ["object_centred", "relative", "appearance"]
-        assert "bookshelf" in prompts[0].text and "green bookshelf" in prompts[2].text
+        assert "bookshelf" in prompts[0].text and "tall bookshelf" in prompts[2].text, (
+            "the colour of its books is nobody's"
+        )
         assert len({p.text for p in prompts}) == 3
-        assert all(p.text[0].isupper() and p.text[-1] in ".?" and p.writer == "offline 2" for p in prompts)
+        assert all(p.text[0].isupper() and p.text[-1] in ".?" and p.writer == "offline 3" for p in prompts)
 
     def test_the_same_flight_is_always_told_the_same(self) -> None:
         assert written(furnished_room(), 4) == written(furnished_room(), 4)
