@@ -8,8 +8,8 @@ import subprocess
 import tempfile
 import time
 import urllib.request
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from websockets.sync.client import ClientConnection, connect
@@ -17,6 +17,8 @@ from websockets.sync.client import ClientConnection, connect
 CHROMIUM = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
 )
+PATIENCE = 60.0
+"""Seconds."""
 FLAGS = ("--headless=new", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run")
 
 
@@ -27,16 +29,17 @@ class Visit:
     errors: list[str] = field(default_factory=list)  # console errors and uncaught exceptions
     requests: list[str] = field(default_factory=list)  # URLs, of frames too
     answer: Any = None  # of the expression that was asked
+    shown: bool = False  # was there a picture that showed what it should?
 
 
 def visit(
     url: str,
     seconds: float,
     expression: str = "document.title",
-    picture: Path | None = None,
+    shows: Callable[[bytes], bool] | None = None,
     size: tuple[int, int] = (1240, 1000),
 ) -> Visit:
-    """Open ``url``, wait, evaluate ``expression`` in it, and take a picture if a path for it is given."""
+    """Open ``url``, wait, evaluate ``expression`` in it; take pictures (PNG) until one ``shows`` what it should."""
     assert CHROMIUM is not None
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
         arguments = [CHROMIUM, *FLAGS, f"--user-data-dir={profile}", "--remote-debugging-port=0", "about:blank"]
@@ -49,8 +52,8 @@ def visit(
             with connect(page["webSocketDebuggerUrl"], max_size=None) as socket:
                 session = _Session(socket)
                 seen = session.visit(url, seconds, expression, size)
-                if picture is not None:
-                    picture.write_bytes(session.picture())
+                if shows is not None:
+                    session.look_until(shows)
                 return seen
         finally:
             browser.terminate()
@@ -74,9 +77,12 @@ class _Session:
         self.seen.answer = result["result"].get("value")
         return self.seen
 
-    def picture(self) -> bytes:
-        """PNG; a page that renders in software without a pause has no time for it."""
-        return base64.b64decode(self._ask("Page.captureScreenshot")["data"])
+    def look_until(self, shows: Callable[[bytes], bool]) -> None:
+        """A busy machine draws late: what comes within `PATIENCE` is in time."""
+        end = time.monotonic() + PATIENCE
+        while not self.seen.shown and time.monotonic() < end:
+            self._listen(0.5)
+            self.seen.shown = shows(base64.b64decode(self._ask("Page.captureScreenshot")["data"]))
 
     def _ask(self, method: str, **parameters: Any) -> Any:
         self._number += 1
