@@ -3,7 +3,7 @@
     python benchmarks/overhead.py plain      # each stage's function, its product saved and loaded; nothing else
     python benchmarks/overhead.py dagster    # `flymirage make` of the same scene, its CPU time taken apart
 
-The scene is that of `flymirage demo` and its settings, unless the environment has others. CPU seconds of this process,
+The scene is that of `flymirage demo` and its settings, unless the environment has others. CPU time of this process,
 imports not counted: they are the same. Content hashes of the products are printed in one word, so that both can be seen
 to have made the same.
 """
