@@ -39,7 +39,7 @@ def process_tags() -> dict[str, str]:
 
 def tag_with_process(instance: dg.DagsterInstance, run: dg.DagsterRun) -> None:
     """Let a run that the daemon launched be recognised too when its process is gone."""
-    if PROCESS_TAG not in run.tags and not run.is_finished:
+    if run.tags.get(PROCESS_TAG) != this_process() and not run.is_finished:
         instance.add_run_tags(run.run_id, process_tags())
 
 
@@ -59,7 +59,7 @@ def close_dead_runs(instance: dg.DagsterInstance) -> int:
     """
     begun = [dg.DagsterRunStatus.NOT_STARTED, dg.DagsterRunStatus.STARTING, dg.DagsterRunStatus.STARTED]
     running = instance.get_runs(dg.RunsFilter(statuses=begun))
-    dead = [run for run in running if _is_dead(run.tags)]
+    dead = [run for run in running if _is_dead(run.tags) and not _inherited(instance, run)]
     for run in dead:
         instance.report_run_failed(run, "the process of this run is gone; run the command again to carry on")
     for run in dead:
@@ -71,3 +71,9 @@ def _is_dead(tags: Mapping[str, str]) -> bool:
     if PROCESS_TAG not in tags or tags.get(HOST_TAG) != socket.gethostname():
         return False  # nothing is known of it from here
     return not is_alive(tags[PROCESS_TAG])
+
+
+def _inherited(instance: dg.DagsterInstance, run: dg.DagsterRun) -> bool:
+    """True if the process it names is that of the run it retries: Dagster copies the tags, and it has none yet."""
+    parent = instance.get_run_by_id(run.parent_run_id) if run.parent_run_id else None
+    return parent is not None and parent.tags.get(PROCESS_TAG) == run.tags[PROCESS_TAG]

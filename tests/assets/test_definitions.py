@@ -9,7 +9,7 @@ import pytest
 
 from flymirage_assets.definitions import build_definitions
 from flymirage_assets.executors import ray_environment
-from flymirage_assets.home import PROCESS_TAG, close_dead_runs, process_tags
+from flymirage_assets.home import PROCESS_TAG, close_dead_runs, process_tags, tag_with_process
 from flymirage_assets.report import SCENE_PRODUCTS
 from flymirage_core.settings import PlannerSettings, Settings
 
@@ -63,6 +63,27 @@ def test_runs_of_killed_processes_are_closed_and_others_left(tags: dict[str, str
         stored = instance.get_run_by_id(run.run_id)
         assert stored is not None
         assert (stored.status == dg.DagsterRunStatus.FAILURE) == bool(closed)
+
+
+def test_a_retry_is_not_taken_for_the_killed_run_whose_tags_it_has() -> None:
+    with dg.instance_for_test() as instance:
+
+        @dg.op
+        def nothing() -> None: ...
+
+        @dg.job
+        def job() -> None:
+            nothing()
+
+        started, tags = dg.DagsterRunStatus.STARTED, {**process_tags(), PROCESS_TAG: "1-7-gone"}
+        killed = instance.create_run_for_job(job, status=started, tags=tags)
+        retry = {"parent_run_id": killed.run_id, "root_run_id": killed.run_id}
+        retried = instance.create_run_for_job(job, status=started, tags=tags, **retry)
+        assert close_dead_runs(instance) == 1
+        statuses = [run.status for run in instance.get_runs(dg.RunsFilter(run_ids=[retried.run_id]))]
+        assert statuses == [started]
+        tag_with_process(instance, retried)
+        assert close_dead_runs(instance) == 0
 
 
 def test_stages_on_ray_have_the_settings_of_this_process_and_none_of_its_secrets(
