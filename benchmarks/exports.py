@@ -16,6 +16,7 @@ from pathlib import Path
 
 import av
 import numpy as np
+from torch.utils.data import DataLoader, Subset
 
 import flymirage_core.dataset
 from flymirage_core.dataset.card import dataset_card
@@ -95,15 +96,22 @@ def synthetic_scenes(folder: Path) -> list[SceneProducts]:
 
 
 def reading(folder: Path) -> None:
-    dataset = flymirage_core.dataset.open(folder, scenes=[flymirage_core.dataset.open(folder).episodes[0].scene])
-    chosen = np.random.default_rng(0).permutation(len(dataset))[:MOST_FRAMES].tolist()
+    scene = flymirage_core.dataset.open(folder).episodes[0].scene
     paths = sorted((folder / "videos").rglob("*.mp4"))[:1]
-    rate("plain PyAV, sequential, RGB alone", lambda: sum(1 for _ in islice(decoded(paths), MOST_FRAMES)))
-    rate("open(), sequential", lambda: sum(1 for i in range(min(MOST_FRAMES, len(dataset))) if dataset[i]))
-    rate("plain PyAV, random: seek and decode, file reopened", lambda: sum(1 for _ in sought(paths, chosen)))
-    rate("open(), random", lambda: sum(1 for i in chosen if dataset[i]))
-    with_depth = flymirage_core.dataset.open(folder, depth=True)
-    rate("open(depth=True), random", lambda: sum(1 for i in chosen if with_depth[i]))
+    for name, with_depth in (("RGB", False), ("RGB and depth", True)):
+        dataset = flymirage_core.dataset.open(folder, scenes=[scene], depth=with_depth)
+        count = min(MOST_FRAMES, len(dataset))
+        orders = {"sequential": range(count), "random": np.random.default_rng(0).permutation(len(dataset))[:count]}
+        for order, chosen in orders.items():
+            indices = [int(i) for i in chosen]
+            rate(f"open(), {name}, {order}, no worker", lambda d=dataset, i=indices: sum(1 for n in i if d[n]))
+            for workers in (0, 2):
+                loader = DataLoader(Subset(dataset, indices), batch_size=16, num_workers=workers)
+                seconds(
+                    f"DataLoader, {name}, {order}, {workers} workers", lambda x=loader: sum(len(b["task"]) for b in x)
+                )
+    rate("plain PyAV, sequential, RGB", lambda: sum(1 for _ in islice(decoded(paths), MOST_FRAMES)))
+    rate("plain PyAV, random, RGB: file reopened", lambda: sum(1 for _ in sought(paths, indices)))
 
 
 MOST_FRAMES = 300
@@ -132,6 +140,12 @@ def timed(what: str, work: Callable[[], object]) -> None:
     work()
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"{what}: {time.process_time() - started:.1f} s of CPU, peak {peak:.0f} MB so far", flush=True)
+
+
+def seconds(what: str, work: Callable[[], int]) -> None:
+    started = time.perf_counter()
+    count = work()
+    print(f"{what}: {count / (time.perf_counter() - started):.0f} frames/s by the clock ({count} frames)", flush=True)
 
 
 def rate(what: str, work: Callable[[], int]) -> None:

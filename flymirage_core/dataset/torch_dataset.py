@@ -4,6 +4,7 @@ It reads our own exports with PyAV and pyarrow alone. Videos have a key frame ev
 seek and at most two decodings away; opened files stay open in each worker.
 """
 
+import os
 from bisect import bisect_right
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
@@ -74,6 +75,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
         self._videos: OrderedDict[Path, _Video] = OrderedDict()
         self._tables: OrderedDict[Path, _DepthTable] = OrderedDict()
         self._boxes: dict[str, BoxMap] = {}
+        self._process = os.getpid()
 
     def __len__(self) -> int:
         return int(self._ends[-1])
@@ -81,6 +83,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
     def __getitem__(self, index: int) -> dict[str, Any]:
         if not -len(self) <= index < len(self):
             raise IndexError(f"frame {index} of {len(self)}")
+        self._open_own_files()
         index %= len(self)
         number = bisect_right(self._ends, index)
         episode = self.episodes[number]
@@ -105,6 +108,11 @@ class FlightDataset(Dataset[dict[str, Any]]):
     def __getstate__(self) -> dict[str, Any]:
         """Workers open files of their own."""
         return {**self.__dict__, "_videos": OrderedDict(), "_tables": OrderedDict()}
+
+    def _open_own_files(self) -> None:
+        """A forked worker shares its parent's open files, and each would move the other's place in them."""
+        if self._process != os.getpid():
+            self._process, self._videos, self._tables = os.getpid(), OrderedDict(), OrderedDict()
 
     def _over_time(
         self, name: str, read: Callable[[int], torch.Tensor], frame: int, length: int
@@ -137,8 +145,9 @@ class FlightDataset(Dataset[dict[str, Any]]):
     def _rgb(self, episode: EpisodeRecord, frame: int) -> torch.Tensor:
         path, first = self.export.video(episode)
         video = _kept_open(self._videos, path, lambda: _Video(path, self.fps))
-        rgb = torch.from_numpy(video.frame(first + frame))  # (H, W, 3)
-        return rgb.permute(2, 0, 1).to(torch.float32) / 255
+        planes = np.ascontiguousarray(video.frame(first + frame).transpose(2, 0, 1))  # (3, H, W)
+        # By numpy: torch would wake all its threads for each picture, and on a busy machine wait for them.
+        return torch.from_numpy(np.divide(planes, np.float32(255), dtype=np.float32))
 
     def _depth_mm(self, episode: EpisodeRecord, frame: int) -> NDArray[np.uint16]:
         path, first = self.export.data(episode)

@@ -85,10 +85,11 @@ def test_what_cannot_be_had_is_said(folder: Path, cafe: SceneProducts, tmp_path:
 
 
 def test_workers_read_the_same_frames(folder: Path) -> None:
-    dataset = flymirage_core.dataset.open(folder)
-    alone = [dataset[i]["observation.state"] for i in range(len(dataset))]
-    loader = DataLoader(dataset, batch_size=16, num_workers=1)
-    torch.testing.assert_close(torch.cat([b["observation.state"] for b in loader]), torch.stack(alone))
+    dataset = flymirage_core.dataset.open(folder, depth=True)
+    alone = [dataset[i] for i in range(len(dataset))]  # its files are open when the workers are forked
+    batches = list(DataLoader(dataset, batch_size=16, num_workers=2, multiprocessing_context="fork"))
+    for key in ("observation.state", RGB_KEY, DEPTH_KEY):
+        torch.testing.assert_close(torch.cat([b[key] for b in batches]), torch.stack([item[key] for item in alone]))
 
 
 def test_a_small_policy_learns_to_fly_from_it(folder: Path) -> None:
