@@ -39,6 +39,7 @@ MIN_VIEWS: Final = 4
 """Views that must have seen a thing that nobody has a name for."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
+TELEVISION: Final = "television"
 BUILDING: Final = frozenset({"window"})
 """What has a name, but is no thing."""
 
@@ -59,7 +60,7 @@ def named(things: Sequence[Observation], votes: Sequence[Vote | None]) -> list[N
     if not things:
         return []
     recognised = trained_recogniser().recognise(np.stack([thing.features for thing in things]))
-    return [_name(r, vote, thing.box) for thing, r, vote in zip(things, recognised, votes, strict=True)]
+    return [chosen_name(r, vote, thing.box) for thing, r, vote in zip(things, recognised, votes, strict=True)]
 
 
 def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
@@ -76,14 +77,16 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
 
 
-def _name(recognition: Recognition, vote: Vote | None, box: FittedBox) -> Name:
+def chosen_name(recognition: Recognition, vote: Vote | None, box: FittedBox) -> Name:
     """The recogniser's finer noun where both agree on the kind; the detector's where the recogniser is not sure.
 
-    What hangs flat on a wall may be a picture: the detector takes those for televisions, so the recogniser is asked.
+    What hangs flat on a wall may be a picture: the detector takes those for televisions, so the recogniser decides.
     """
     score = 0.0 if recognition.noun == UNKNOWN else recognition.confidence
     own = Name(recognition.noun, "recogniser", score, recognition.material, recognition.left_over)
-    if vote is None or agree(recognition.noun, vote.noun) or score >= SURE or (box.on_wall and score > 0):
+    if vote is None or agree(recognition.noun, vote.noun) or score >= SURE:
+        return own
+    if box.on_wall and (score > 0 or vote.noun == TELEVISION):
         return own
     weight = vote.weight / (vote.weight + HALF_VOTE)
     return Name(vote.noun, "detector", weight, recognition.material, recognition.left_over)

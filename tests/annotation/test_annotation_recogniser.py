@@ -13,9 +13,9 @@ from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.carving import Detections
 from flymirage_core.annotation.fused_points import Frame
 from flymirage_core.annotation.labels import UNKNOWN
-from flymirage_core.annotation.naming import Name, agree, is_believed
-from flymirage_core.annotation.picture_votes import vote_weights, votes
-from flymirage_core.annotation.recogniser import Recogniser, trained_recogniser
+from flymirage_core.annotation.naming import Name, agree, chosen_name, is_believed
+from flymirage_core.annotation.picture_votes import Vote, vote_weights, votes
+from flymirage_core.annotation.recogniser import Recogniser, Recognition, trained_recogniser
 from flymirage_core.annotation.yolox import PictureDetection
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 
@@ -177,6 +177,13 @@ def test_what_looks_like_a_left_over_is_dropped_unless_the_detector_knows_it_and
     assert is_believed(box(0), name(left_over=0.85), seen(4.0))
     assert not is_believed(box(0), name(left_over=0.95), seen(4.0))
     assert is_believed(box(0), name(left_over=0.9), seen(views=30))  # bulky and seen from everywhere
+
+
+def test_a_flat_thing_on_a_wall_is_no_television_because_the_detector_says_so():
+    unsure = Recognition(UNKNOWN, 0.2, "", 0.0)
+    on_wall = replace(box(0, (0.9, 0.05, 0.6)), on_wall=True)
+    assert chosen_name(unsure, Vote("television", 3.0, 8), on_wall).noun == UNKNOWN
+    assert chosen_name(unsure, Vote("television", 3.0, 8), box(0)).noun == "television"
 
 
 def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
