@@ -74,7 +74,7 @@ def scene_page(share: SceneShare, prose: str, flights: str, view: str) -> str:
         c.scene,
         f"""<p><a href="../index.html">all scenes</a></p><h1>{escape(c.scene)}</h1>
 <p class="lead">{escape(c.category)}, {escape(share.subcategory)}: {c.objects} objects, {c.flights} flights,
-{c.episodes} kept. {escape(share.terms)}.</p>{frame}<p class="soft">{hint}</p><p>{escape(prose)}</p>
+{c.episodes} kept; {escape(share.terms)}.</p>{frame}<p class="soft">{hint}</p><p>{escape(prose)}</p>
 <h2>Flights</h2><div class="row">{flights}</div>""",
     )
 
