@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import FAST, KEYS
 from fake_http import Reply
 from marble_files import originals_of
 from paper_services import PaperServices, paper_services
+from scripted import FAST, KEYS
 from splat_worlds import box
 
 from flymirage_core.settings import Settings

@@ -5,12 +5,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from conftest import FAST, KEYS, Script
 from designs import design
 from fake_gemini import FakeGemini
 from fake_http import Reply
 from fake_openai import FakeOpenAI
 from pydantic import BaseModel
+from scripted import FAST, KEYS, Script
 
 from flymirage_core.asking import Question
 from flymirage_core.errors import (

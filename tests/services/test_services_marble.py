@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import CANARY, FAST, KEYS
 from designs import design
 from fake_http import Reply
 from fake_marble import OPENAPI, REFUSED_402, FakeMarble
 from marble_files import GROUND, SCALE, originals_of
+from scripted import CANARY, FAST, KEYS
 from splat_worlds import box
 
 from flymirage_core.errors import (

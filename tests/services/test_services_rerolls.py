@@ -4,10 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import KEYS
 from fake_http import Reply
 from marble_files import originals_of
 from paper_services import paper_services
+from scripted import KEYS
 from splat_worlds import box
 
 from flymirage_assets.stage import ProductAsset, upstream_digests

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import CANARY, FAST, KEYS, Script
 from designs import design
 from fake_gemini import FakeGemini
 from fake_http import Reply
 from fake_marble import FakeMarble
 from fake_openai import FakeOpenAI
 from marble_files import originals_of
+from scripted import CANARY, FAST, KEYS, Script
 from splat_worlds import box
 
 from flymirage_core.asking import Question

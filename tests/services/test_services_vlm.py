@@ -9,8 +9,8 @@ from typing import Any
 import cv2
 import numpy as np
 import pytest
-from conftest import FAST
 from filmed_room import film, flight_to, furnished_room
+from scripted import FAST
 
 from flymirage_core.errors import BadAnswerError, TransientServiceError
 from flymirage_core.language.contact_sheet import contact_sheets

@@ -4,9 +4,9 @@ import json
 from collections.abc import Iterator
 
 import pytest
-from conftest import KEYS
 from paper_services import PaperServices, offline_originals, paper_services
 from projects import SMALL, Project
+from scripted import KEYS
 
 from flymirage_core.language.prompts import Prompts
 from flymirage_core.language.verdicts import QualityVerdicts
