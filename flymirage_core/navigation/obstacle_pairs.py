@@ -106,12 +106,8 @@ def segment_pairs(points: Float64, first: int, last: int, path: Float64, space: 
 
 def _path_round(a: Float64, b: Float64, space: OccupancyGrid) -> Float64:
     """Shortest free path from ``a`` to ``b``: in a window round them if there is one, else in the whole grid."""
-    low = np.maximum(space.index_of(np.minimum(a, b) - WINDOW), 0)
-    high = space.index_of(np.maximum(a, b) + WINDOW) + 1
-    box = space.state[low[0] : high[0], low[1] : high[1], low[2] : high[2]]
-    window = OccupancyGrid(np.ascontiguousarray(box), space.origin + low * space.resolution, space.resolution)
     try:
-        return shortest_path(window, a, b)
+        return shortest_path(space.window(np.minimum(a, b) - WINDOW, np.maximum(a, b) + WINDOW), a, b)
     except PlanningError:
         return shortest_path(space, a, b)
 

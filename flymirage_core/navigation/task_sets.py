@@ -172,9 +172,9 @@ def _one_set(set_index: int, start: Float64, draw: _Draw) -> list[Task]:
 
 def _random_start(space: TaskSpace, settings: TaskSettings, generator: np.random.Generator) -> Float64:
     """The centre (3,) of a random reachable voxel, with nothing within the safety radius if there is such a one."""
-    cells = np.argwhere(space.reachable)
     for _ in range(START_TRIALS):
-        point = space.grid.centre_of(cells[generator.integers(len(cells))])
+        place = space.places[generator.integers(len(space.places))]
+        point = space.grid.centre_of(np.unravel_index(place, space.reachable.shape))
         if sphere_is_clear(space.grid, point, settings.safety_radius):
             break
     return point

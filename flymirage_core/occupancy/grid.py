@@ -41,6 +41,13 @@ class OccupancyGrid:
         indices = np.asarray(indices)
         return np.asarray(((indices >= 0) & (indices < self.state.shape)).all(axis=-1))
 
+    def window(self, low: ArrayLike, high: ArrayLike) -> "OccupancyGrid":
+        """The voxels between two corners (3,), world points, as a grid of its own; what lies outside is left out."""
+        first = np.clip(self.index_of(low), 0, self.state.shape)
+        end = np.clip(self.index_of(high) + 1, 0, self.state.shape)
+        block = self.state[first[0] : end[0], first[1] : end[1], first[2] : end[2]]
+        return OccupancyGrid(np.ascontiguousarray(block), self.origin + first * self.resolution, self.resolution)
+
     def state_at(self, points: ArrayLike) -> NDArray[np.uint8]:
         """State (...,) at world points (..., 3); UNKNOWN outside of the array."""
         indices = self.index_of(points)

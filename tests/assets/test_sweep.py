@@ -74,7 +74,9 @@ def test_a_clock_that_jumps_a_day_ahead_and_back_asks_for_no_run_twice(sweeper: 
 
 
 @pytest.mark.parametrize(
-    ("process", "asked"), [(this_process(), [KEYS[0], KEYS[2]]), ("1-7-gone", [KEYS[0], KEYS[1], KEYS[2]])]
+    ("process", "asked"),
+    [(this_process(), [KEYS[0], KEYS[2]]), ("1-7-gone", [KEYS[0], KEYS[1], KEYS[2]])],
+    ids=["alive", "killed"],  # the same in each of the processes that share the tests
 )
 def test_a_scene_that_is_being_made_is_left_alone_unless_its_process_was_killed(
     sweeper: Sweeper, process: str, asked: list[str]
