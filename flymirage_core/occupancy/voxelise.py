@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from flymirage_core.errors import WorldError
+from flymirage_core.occupancy.distance import voxels_near
 from flymirage_core.occupancy.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 from flymirage_core.settings import OccupancySettings
 from flymirage_core.splats.cloud import GaussianCloud
@@ -157,18 +158,19 @@ def _reached(grid: OccupancyGrid, forbidden: Bool, centre: NDArray[np.float64]) 
     """(X, Y, Z) what a ball that starts at c can sweep without touching matter or forbidden space."""
     radius = PASSAGE_RADIUS / grid.resolution  # voxels
     empty = (grid.state != OCCUPIED) & ~forbidden
-    passable = ndimage.distance_transform_edt(np.pad(empty, 1))[1:-1, 1:-1, 1:-1] - 0.5 >= radius - 1e-6
-    labels, _ = ndimage.label(passable)  # 6-connected
-    start = _seed(grid, passable, centre)
-    away = ndimage.distance_transform_edt(labels != labels[start])
-    return np.asarray(empty & (away - 0.5 <= radius - 1e-6))
+    touching = voxels_near(np.pad(~empty, 1, constant_values=True), radius + 0.5 - 2e-6)[1:-1, 1:-1, 1:-1]
+    labels, _ = ndimage.label(~touching)  # 6-connected
+    start = _seed(grid, ~touching, centre)
+    return np.asarray(empty & voxels_near(labels == labels[start], radius + 0.5 - 1e-6))
 
 
 def _seed(grid: OccupancyGrid, passable: Bool, centre: NDArray[np.float64]) -> tuple[int, int, int]:
     """The voxel nearest to c in which the ball fits."""
-    candidates = np.argwhere(passable)  # (M, 3)
-    distances = np.linalg.norm(grid.centre_of(candidates) - centre, axis=1)  # (M,)
     slack = CENTRE_RADIUS + grid.resolution * np.sqrt(3) / 2  # voxel centres: c itself may sit in a corner of its voxel
+    first, end = (np.clip(grid.index_of(centre + d) + (d > 0), 0, passable.shape) for d in (-slack, slack))
+    block = passable[first[0] : end[0], first[1] : end[1], first[2] : end[2]]
+    candidates = np.argwhere(block) + first  # (M, 3)
+    distances = np.linalg.norm(grid.centre_of(candidates) - centre, axis=1)  # (M,)
     if len(distances) == 0 or distances.min() > slack:
         x, y, z = centre
         raise WorldError(
@@ -185,9 +187,9 @@ def _cropped(grid: OccupancyGrid, kept: Bool) -> OccupancyGrid:
     if not kept.any():
         return grid
     margin = int(np.ceil(MARGIN / grid.resolution))
-    indices = np.argwhere(kept)
-    first = np.maximum(indices.min(axis=0) - margin, 0)
-    last = np.minimum(indices.max(axis=0) + 1 + margin, grid.state.shape)
+    layers = [np.flatnonzero(kept.any(axis=others)) for others in ((1, 2), (0, 2), (0, 1))]
+    first = np.maximum([of_axis[0] - margin for of_axis in layers], 0)
+    last = np.minimum([of_axis[-1] + 1 + margin for of_axis in layers], grid.state.shape)
     part = grid.state[first[0] : last[0], first[1] : last[1], first[2] : last[2]]
     return OccupancyGrid(np.ascontiguousarray(part), grid.origin + first * grid.resolution, grid.resolution)
 

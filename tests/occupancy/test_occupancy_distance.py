@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import ndimage
 
-from flymirage_core.occupancy.distance import clearance_at, clearance_field, inflate
+from flymirage_core.occupancy.distance import clearance_at, clearance_field, inflate, voxels_near
 from flymirage_core.occupancy.grid import FREE, OCCUPIED, UNKNOWN, OccupancyGrid
 
 SEEDS = st.integers(0, 2**32 - 1)
@@ -59,3 +60,11 @@ def test_clearance_outside_of_the_grid_is_zero():
     assert clearance_at(grid, field, [[0.05, 0.45, 1.25], [9, 9, 9], [-0.31, 0.45, 1.25]]).tolist() == pytest.approx(
         [0.25, 0, 0]
     )
+
+
+@given(SEEDS, st.floats(0, 6))
+@settings(max_examples=60, deadline=None)
+def test_what_is_near_is_what_a_whole_distance_transform_finds_near(seed, distance):
+    voxels = np.random.default_rng(seed).random((7, 6, 5)) < 0.05
+    voxels[3, 3, 3] = True
+    np.testing.assert_array_equal(voxels_near(voxels, distance), ndimage.distance_transform_edt(~voxels) <= distance)
