@@ -23,11 +23,12 @@ from typing import Any
 
 import cv2
 import numpy as np
+from annotation_colours import colour_of_paint, colours_of_surface, share_called
+from annotation_table import table
 from scipy.optimize import linear_sum_assignment
 
 from flymirage_core.annotation.annotator import Annotator
 from flymirage_core.annotation.boxes import BoxMap
-from flymirage_core.annotation.colours import colour_name, to_lab
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
 from flymirage_core.annotation.exploration import exploration_paths, explore
 from flymirage_core.annotation.fusion import yaw_iou
@@ -52,8 +53,6 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "annotation"))
 
 MIN_TRUE_SIZE = 0.2  # metres: smaller true objects are not counted as missed
 PIXEL_STEP = 4  # every fourth pixel, both ways, is looked at
-SURFEL_SPACING = 0.04  # metres between the surfels, and edge of the cells, by which a true object's colour is taken
-COLOUR_SAMPLES = 500  # of those cells are asked for their colour
 MIN_COLOUR_SHARE = 1 / 3
 MIN_TRUE_PIXELS = 150  # over all views within d_th1 of its centre
 
@@ -246,50 +245,6 @@ def names_and_colours(
     return counts | {"colour": colour, "paint": paint}
 
 
-def share_called(seen: str, colours: Counter[str]) -> float:
-    """The share of ``colours`` for which the ``seen`` word may be used."""
-    called = sum(count for name, count in colours.items() if coloured(name, seen) is not Truth.NO)
-    return called / max(colours.total(), 1)
-
-
-def colour_of_paint(paint: str) -> str:
-    """The basic name of a paint's own colour; `coloured` says whether the seen name may be used for it."""
-    from flymirage_core.worldgen.colours import linear_rgb
-
-    return _names_of_linear(np.array([linear_rgb(paint)]))[0]
-
-
-def colours_of_surface(thing: Any, scene: str) -> Counter[str]:
-    """How much of what is seen of a true object from outside has which basic colour, in white light.
-
-    From above and from all sides; of what is on a wall, from the front. A plant's paint is its pot's, a picture's its
-    frame's; this is what one may say of the whole.
-    """
-    from flymirage_core.worldgen.assembly import object_parts
-    from flymirage_core.worldgen.surfaces import Surfels, surfels_of
-
-    surfels = Surfels.joined([surfels_of(part, SURFEL_SPACING) for part in object_parts(thing, scene)])
-    away = surfels.points - np.array(thing.centre)
-    local = np.column_stack([away[:, :2] @ thing.axes.T, away[:, 2]])  # (N, 3), y to the front
-    sides = [(1, 1)] if thing.placement == "on_wall" else [(0, 1), (0, -1), (1, 1), (1, -1), (2, 1)]
-    seen = np.concatenate([_met_first(local, axis, sign) for axis, sign in sides])
-    return Counter(_names_of_linear(surfels.albedo[seen[:: max(1, len(seen) // COLOUR_SAMPLES)]]))
-
-
-def _met_first(points: np.ndarray, axis: int, sign: int) -> np.ndarray:
-    """Indices of the points (N, 3) farthest along ``sign`` times an axis, one for each cell of the other two."""
-    cells = np.floor(np.delete(points, axis, axis=1) / SURFEL_SPACING).astype(int)  # (N, 2)
-    order = np.lexsort((-sign * points[:, axis], cells[:, 1], cells[:, 0]))
-    first = np.append(True, (np.diff(cells[order], axis=0) != 0).any(axis=1))
-    return order[first]
-
-
-def _names_of_linear(linear: np.ndarray) -> list[str]:
-    """The names of linear RGB colours (N, 3)."""
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0) ** (1 / 2.4) - 0.055)
-    return [colour_name(lab) for lab in to_lab(255 * np.clip(srgb, 0, 1))]
-
-
 def prototype_figures(path: Path, scene: Scene, seen: Seen, settings: Settings) -> dict[str, float]:
     """CPU seconds, recall and precision of the prototype's second pass on the same views."""
     specification = importlib.util.spec_from_file_location("prototype", path)
@@ -362,49 +317,6 @@ def peak_memory() -> float:
     """Most MB of memory that this process held at once, the views of the world included."""
     status = Path("/proc/self/status").read_text().split()
     return int(status[status.index("VmHWM:") + 1]) / 1000
-
-
-COLUMNS = ("R25_1", "P25_1", "R50_1", "R25_2", "P25_2", "R50_2", "P50_2")
-
-
-def table(rows: Sequence[dict[str, Any]]) -> str:
-    """Markdown: a line a world, then means, medians and pooled figures (every object of all worlds counts the same)."""
-    head = ["world", "true", "boxes", *COLUMNS, "cm", "noun", "wrong", "colour/paint", "s", "MB", "prototype s", "R/P"]
-    lines = [head, ["---"] * len(head), *(_line(r["category"].split(" / ")[-1], [r], np.mean) for r in rows)]
-    lines += [_line("**mean**", rows, np.mean), _line("**median**", rows, np.median)]
-    pooled = [{**r, **{c: _pooled(rows, c) for c in COLUMNS}} for r in rows]
-    lines.append(_line("**pooled**", pooled, np.mean))
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def _pooled(rows: Sequence[dict[str, Any]], column: str) -> float:
-    """A share over all worlds together: recalls over true objects, precisions over boxes."""
-    weights = [r["true" if column.startswith("R") else f"judged_{column[-1]}"] for r in rows]
-    return float(np.average([r[column] for r in rows], weights=weights)) if sum(weights) else math.nan
-
-
-def _line(name: str, rows: Sequence[dict[str, Any]], middle: Callable[[Any], Any]) -> list[str]:
-    def of(key: str) -> float:
-        return float(middle([r[key] for r in rows if key in r] or [math.nan]))
-
-    matched = max(sum(r["matched"] for r in rows), 1)
-    named = sum(r["noun"] + r["family"] for r in rows) / matched
-    wrong = 1 - named - sum(r["generic"] for r in rows) / matched
-    colours = "/".join(f"{sum(r[key] for r in rows) / matched:.2f}" for key in ("colour", "paint"))
-    return [
-        name,
-        str(sum(r["true"] for r in rows)),
-        str(sum(r["boxes"] for r in rows)),
-        *(f"{of(c):.2f}" for c in COLUMNS),
-        f"{of('cm_2'):.1f}",
-        f"{named:.2f}",
-        f"{wrong:.2f}",
-        colours,
-        f"{of('s_1'):.0f} + {of('s_2'):.0f}",
-        f"{of('MB'):.0f}",
-        f"{of('prototype_s'):.0f}",
-        f"{of('prototype_R25'):.2f}/{of('prototype_P25'):.2f}",
-    ]
 
 
 def write_pictures(folder: Path, scene: Scene, seen: Seen, boxes: BoxMap, settings: Settings) -> None:
