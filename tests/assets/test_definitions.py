@@ -47,18 +47,19 @@ def test_the_workspace_loads_as_dagster_dev_loads_it() -> None:
     assert outcome.returncode == 0, outcome.stdout + outcome.stderr
 
 
+@dg.op
+def nothing() -> None: ...
+
+
+@dg.job
+def idle_job() -> None:
+    nothing()
+
+
 @pytest.mark.parametrize(("tags", "closed"), [(process_tags(), 0), ({**process_tags(), PROCESS_TAG: "1-7-gone"}, 1)])
 def test_runs_of_killed_processes_are_closed_and_others_left(tags: dict[str, str], closed: int) -> None:
     with dg.instance_for_test() as instance:
-
-        @dg.op
-        def nothing() -> None: ...
-
-        @dg.job
-        def job() -> None:
-            nothing()
-
-        run = instance.create_run_for_job(job, status=dg.DagsterRunStatus.STARTED, tags=tags)
+        run = instance.create_run_for_job(idle_job, status=dg.DagsterRunStatus.STARTED, tags=tags)
         assert close_dead_runs(instance) == closed
         stored = instance.get_run_by_id(run.run_id)
         assert stored is not None
@@ -67,18 +68,10 @@ def test_runs_of_killed_processes_are_closed_and_others_left(tags: dict[str, str
 
 def test_a_retry_is_not_taken_for_the_killed_run_whose_tags_it_has() -> None:
     with dg.instance_for_test() as instance:
-
-        @dg.op
-        def nothing() -> None: ...
-
-        @dg.job
-        def job() -> None:
-            nothing()
-
         started, tags = dg.DagsterRunStatus.STARTED, {**process_tags(), PROCESS_TAG: "1-7-gone"}
-        killed = instance.create_run_for_job(job, status=started, tags=tags)
+        killed = instance.create_run_for_job(idle_job, status=started, tags=tags)
         retry = {"parent_run_id": killed.run_id, "root_run_id": killed.run_id}
-        retried = instance.create_run_for_job(job, status=started, tags=tags, **retry)
+        retried = instance.create_run_for_job(idle_job, status=started, tags=tags, **retry)
         assert close_dead_runs(instance) == 1
         statuses = [run.status for run in instance.get_runs(dg.RunsFilter(run_ids=[retried.run_id]))]
         assert statuses == [started]
