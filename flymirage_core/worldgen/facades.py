@@ -44,7 +44,9 @@ MIRRORED: Final = 3.6
 LIT_SHARE: Final = 0.35
 """Of the windows that are lit at night."""
 HOUSE_DEPTH: Final = 6.0
+"""Metres."""
 STOREY: Final = 3.1
+"""Metres from floor to floor."""
 SHOP_HEIGHT: Final = 2.62
 """Metres up to a shop front's fascia."""
 
