@@ -14,11 +14,12 @@ def status(
 ) -> None:
     """What is in the store."""
     from flymirage_assets.report import SCENE_PRODUCTS, products_table, scenes_table
-    from flymirage_core.scene.keys import check_scene_key
+    from resources.housekeeping import check_known
 
     store = project_store()
     if scene is not None:
-        console.print(products_table(store, check_scene_key(scene)))
+        check_known(store, scene)
+        console.print(products_table(store, scene))
         return
     keys = store.scenes()
     if not keys:
@@ -27,4 +28,4 @@ def status(
     console.print(scenes_table(store, keys[-last:]))
     finished = len(store.scenes_with(SCENE_PRODUCTS[-1]))
     shown = f"; the last {last} are shown" if len(keys) > last else ""
-    console.print(f"{len(keys)} scenes, {finished} of them finished{shown}")
+    console.print(f"scenes: {len(keys)}, finished: {finished}{shown}")

@@ -102,8 +102,9 @@ def test_an_unknown_setting(project: Project) -> None:
     assert "max_sped" in one_sentence(project, "status")
 
 
-def test_making_a_scene_that_nobody_knows(project: Project) -> None:
-    assert "'nowhere' is not known" in one_sentence(project, "make", "nowhere")
+@pytest.mark.parametrize("command", ["make", "status"])
+def test_a_scene_that_nobody_knows(project: Project, command: str) -> None:
+    assert "'nowhere' is not known" in one_sentence(project, command, "nowhere")
 
 
 def test_exporting_nothing(project: Project) -> None:
