@@ -82,9 +82,9 @@ def record_frames(
 class Measured:
     """What is known of a picture besides its pose."""
 
-    alpha_coverage: float
-    mean_depth: float
-    target_share: float | None
+    alpha_coverage: float  # share of the pixels
+    mean_depth: float  # metres, z-depth
+    target_share: float | None  # share of the pixels
 
 
 @dataclass(frozen=True, eq=False)
