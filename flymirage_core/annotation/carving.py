@@ -67,8 +67,9 @@ def detections(
         distance = np.linalg.norm(centres - frame.camera.position, axis=1)
         shown = groups.shown_in(frame)
         shown = shown[distance[shown] <= max_distance]
-        hits = np.zeros(len(boxes), np.int64)
-        _count_hits(groups.points, groups.starts, shown, frame.depth, *_projection(frame), hits)
+        votes = np.zeros((len(members), 2), np.int32)
+        _vote(groups.points, groups.starts, shown, frame.depth, *_projection(frame), votes)
+        hits = np.add.reduceat(votes[:, 0], groups.starts[:-1])  # (B,)
         seen = hits >= MIN_SUPPORT_POINTS
         views += seen
         found[:, f] = np.where(seen, hits, 0)
@@ -145,20 +146,3 @@ def _vote(
                 votes[n, 0] += 1
             elif gap > tolerance:
                 votes[n, 1] += 1
-
-
-@numba.njit(cache=True, nogil=True)
-def _count_hits(
-    points: Float32,
-    starts: NDArray[np.intp],
-    groups: NDArray[np.intp],
-    depth: Float32,
-    matrix: Float32,
-    lens: Float32,
-    hits: NDArray[np.int64],
-) -> None:
-    for g in groups:
-        for n in range(starts[g], starts[g + 1]):
-            gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
-            if abs(gap) <= tolerance:
-                hits[g] += 1
