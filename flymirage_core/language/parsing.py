@@ -52,6 +52,7 @@ class Phrase:
 
     noun: str = ""
     terms: list[Term] = field(default_factory=list)
+    words: list[str] = field(default_factory=list)  # that said the first of the terms: some are part of a name
     links: list[Link] = field(default_factory=list)
     unchecked: list[str] = field(default_factory=list)
     bare: bool = False  # without "the" or "a"
@@ -181,11 +182,13 @@ def _core(cursor: _Cursor) -> Phrase:
     while True:
         separated = 1 if cursor.word in (",", "and") else 0
         cursor.at += separated
+        begun = cursor.at
         term = cursor.take(_ADJECTIVES)
         if term is None:
             cursor.at -= separated
             break
         phrase.terms.append(Most(term.by, rank=rank) if isinstance(term, Most) else term)
+        phrase.words.append(" ".join(cursor.words[begun : cursor.at]))
     words: list[str] = []
     while cursor.word and not _noun_ends(cursor, words):
         term = cursor.take(_ADJECTIVES)  # "cosy red chair": after a word that is none
@@ -227,6 +230,7 @@ def _undo_adjective(phrase: Phrase, words: list[str]) -> None:
         if last in nouns:
             words.append(nouns[last])
             phrase.terms.pop()
+            phrase.words.pop()
 
 
 def _link(cursor: _Cursor, phrase: Phrase, apart: bool) -> bool:

@@ -129,7 +129,7 @@ class _Reader:
 
     def meanings(self, phrase: Phrase, may_be_nameless: bool) -> Iterator[Meaning]:
         """One for each way in which what follows the noun may hang together."""
-        base = (*self._noun(phrase, may_be_nameless), *phrase.terms)
+        base = self._core(phrase, may_be_nameless)
         links = [self._read(link) for link in phrase.links]
         for parents in product(*(self._parents(phrase.links, i) for i in range(len(links)))):
             yield Meaning((*base, *_children(-1, links, parents)))
@@ -139,7 +139,16 @@ class _Reader:
         return [-1, i - 1] if i and links[i - 1].landmarks and not links[i].of_head else [-1]
 
     def _read(self, link: Link) -> tuple[Link, tuple[Meaning, ...]]:
-        return link, tuple(Meaning((*self._noun(mark, True), *mark.terms)) for mark in link.landmarks)
+        return link, tuple(Meaning(self._core(mark, True)) for mark in link.landmarks)
+
+    def _core(self, phrase: Phrase, may_be_nameless: bool) -> tuple[Term, ...]:
+        """Noun and adjectives; those that are part of a name here ("cardboard box", "low bookshelf") say no more."""
+        said = phrase.words if not is_generic(phrase.noun) else []
+        for i in range(len(said)):
+            name = " ".join([*said[i:], phrase.noun])
+            if any(named(name, label) is Truth.YES for label in self.labels):
+                return (Noun(name), *phrase.terms[:i], *phrase.terms[len(said) :])
+        return (*self._noun(phrase, may_be_nameless), *phrase.terms)
 
     def _noun(self, phrase: Phrase, may_be_nameless: bool) -> tuple[Term, ...]:
         """The longest end of the noun's words that names something here; words before it cannot be checked.

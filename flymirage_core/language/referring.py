@@ -5,7 +5,7 @@ Candidates are tried from the plainest to the most laboured; the resolver decide
 19 (1995).
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations, islice, product
 
 import numpy as np
@@ -49,7 +49,7 @@ MANY_COLOURED = ("painting", "poster", "picture", "mirror", "window", "tapestry"
 """Head nouns of things whose one measured colour is a mean of many, or of what they reflect."""
 VARIETY = 3
 """Among this many best unambiguous phrases one is drawn, so that not all prompts use the same relation."""
-MOST_TRIED = 600
+MOST_TRIED = 3000
 """Candidates of one kind, after which nothing better is hoped for."""
 SEVERAL = 2
 """Fewer prompts than this are filled up with a second one of a kind."""
@@ -65,7 +65,13 @@ BY_SIZE = (
 )
 TELLING_SHAPES = (Shape.TALL, Shape.LOW, Shape.LONG)
 """Of things with a name: every picture is thin, and hardly anybody calls an armchair boxy."""
-BY_PLACE = (Superlative.NEAREST, Superlative.LEFTMOST, Superlative.RIGHTMOST, Superlative.FARTHEST)
+FIRSTS: Sequence[Term] = [
+    Most(by) for by in (Superlative.NEAREST, Superlative.FARTHEST, Superlative.LEFTMOST, Superlative.RIGHTMOST)
+]
+"""From the drone; of what is on one side of it, only the first two are said."""
+COUNTED: Sequence[Term] = [
+    Most(by, rank=n) for by in (Superlative.NEAREST, Superlative.LEFTMOST, Superlative.RIGHTMOST) for n in (2, 3)
+]
 RELATIONS_BY_SENSE = (
     Relation.ON,
     Relation.UNDER,
@@ -140,6 +146,7 @@ class _Description:
         sized: list[Term] = [Sized(size) for size in Size]
         # Of a thing without a name the largest is looked for among all things, seen or not: when nothing else is left.
         self.sizes, self.last_sizes = (sized, largest) if self.nameless else ([*largest, *sized], [])
+        self.levels: list[Term] = []
         self._place_list: list[Term] | None = None
 
     def object_centred(self) -> Iterator[Meaning]:
@@ -148,48 +155,61 @@ class _Description:
         kernels: list[Terms] = [(self.noun,)]
         if self.nameless:
             kernels = [(shape, *colours, self.noun) for shape in self._shapes()]
-        ranks: list[Term] = [Most(by) for by in BY_PLACE]
-        ranks += [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
         yield from (Meaning(kernel) for kernel in kernels)
         yield from _with(kernels, self.sizes)
-        yield from _with(kernels, self.sides)
-        yield from _with(kernels, ranks)
-        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
-        yield from _with(kernels, self.last_sizes)
+        yield from _with(kernels, [*self.levels, *self.sides])
+        yield from _with(kernels, FIRSTS)
+        yield from self._picked_among(kernels)
 
     def relative(self) -> Iterator[Meaning]:
         """The noun with a relation to the most sensible landmarks; refined by looks, a side, or a second relation."""
         kernels: list[Terms] = [(self.noun,), *((look, self.noun) for look in self.looks[:3])]
+        places, parts = self._places(), [*self.sides, *self.levels]
         for kernel in kernels:
-            yield from _with([kernel], self._places())
+            yield from _with([kernel], places)
         yield from _with(kernels, [Most(Superlative.CLOSEST_TO, m) for m, _ in self._landmarks()])
+        kernels += [(*pair, self.noun) for pair in self._pairs()]
+        for kernel in kernels[4:]:
+            yield from _with([kernel], places)
         for kernel in kernels:
-            yield from (Meaning((*kernel, side, place)) for side in self.sides for place in self._places())
-        sizes = [*self.sizes, *(Most(by) for by in BY_PLACE)]
-        yield from (Meaning((size, *k, p)) for k in kernels[:2] for p in self._places()[:8] for size in sizes)
+            yield from (Meaning((*kernel, part, place)) for part in parts for place in places)
+        near_it: list[Terms] = [(*kernel, place) for kernel in kernels for place in places[:8]]
+        for sizes in ([*self.sizes, *FIRSTS], self.last_sizes):
+            yield from _with(near_it, sizes)
         for kernel in kernels:
-            pairs = combinations(self._places()[:10], 2)
+            pairs = combinations(places[:10], 2)
             yield from (Meaning((*kernel, one, other)) for one, other in pairs if _landmarks_differ(one, other))
 
     def appearance(self) -> Iterator[Meaning]:
         """Always something seen on the thing: colour, material, shape, then size among its like, or a side as well."""
-        pairs = [pair for pair in combinations(self.looks, 2) if type(pair[0]) is not type(pair[1])]
-        looks: list[Terms] = [*((look,) for look in self.looks), *pairs]
+        looks: list[Terms] = [*((look,) for look in self.looks), *self._pairs()]
         guessed = [look for look in looks if any(isinstance(term, Material) for term in look)]
-        for kernels in ([look for look in looks if look not in guessed], guessed):
-            yield from self._seen([(*look, self.noun) for look in kernels])
+        for chosen in ([look for look in looks if look not in guessed], guessed):
+            kernels: list[Terms] = [(*look, self.noun) for look in chosen]
+            yield from (Meaning(kernel) for kernel in kernels)
+            yield from _with(kernels, self.sizes)
+            yield from _with(kernels, [*self.levels, *self.sides])
+            yield from _with(kernels, FIRSTS)
+            if not self.nameless:
+                yield from _with([(self.noun,)], self.sizes[:3])
+            yield from self._picked_among(kernels)
 
-    def _seen(self, kernels: list[Terms]) -> Iterator[Meaning]:
-        yield from (Meaning(kernel) for kernel in kernels)
-        yield from _with(kernels, self.sizes)
-        yield from _with(kernels, self.sides)
-        yield from _with(kernels, [Most(by) for by in BY_PLACE])
-        if not self.nameless:
-            yield from _with([(self.noun,)], self.sizes[:3])
-        yield from (Meaning((size, *kernel, side)) for kernel in kernels for side in self.sides for size in self.sizes)
-        ranks: list[Term] = [Most(by, rank=n) for by in BY_PLACE[:3] for n in (2, 3)]
-        yield from _with(kernels, ranks)
+    def _pairs(self) -> list[Terms]:
+        """Two looks of different kinds."""
+        return [pair for pair in combinations(self.looks, 2) if type(pair[0]) is not type(pair[1])]
+
+    def _picked_among(self, kernels: list[Terms]) -> Iterator[Meaning]:
+        """One by its size or place among its like on one side of the drone or at one height, or counted among all."""
+        parts: list[Term] = [*self.sides, *self.levels]
+        for part in parts:
+            yield from _with([(*kernel, part) for kernel in kernels], [*self.sizes, *FIRSTS[:2]])
+        yield from _with(
+            [(*kernel, *both) for kernel in kernels for both in product(self.sides, self.levels)], FIRSTS[:2]
+        )
+        yield from _with(kernels, COUNTED)
         yield from _with(kernels, self.last_sizes)
+        for part in parts:
+            yield from _with([(*kernel, part) for kernel in kernels], self.last_sizes)
 
     def _shapes(self) -> list[Term]:
         return [look for look in self.looks if isinstance(look, Shaped)]
