@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
 from flymirage_core.language.meaning import Shape, Size, Superlative
-from flymirage_core.language.scene_relations import Relation, Side
+from flymirage_core.language.scene_relations import Level, Relation, Side
 
 T = TypeVar("T")
 
@@ -45,12 +45,30 @@ SIDES: Mapping[Side, tuple[str, ...]] = {
     Side.RIGHT: ("on your right", "to your right", "on your right-hand side", "off to your right"),
     Side.AHEAD: ("straight ahead", "straight ahead of you", "directly ahead", "right in front of you"),
     Side.REAR: ("behind you", "at your back"),
+    Side.AHEAD_LEFT: ("ahead of you on the left", "ahead on your left"),
+    Side.AHEAD_RIGHT: ("ahead of you on the right", "ahead on your right"),
+    Side.REAR_LEFT: ("behind you on the left", "behind you to the left"),
+    Side.REAR_RIGHT: ("behind you on the right", "behind you to the right"),
 }
 ALSO_SIDES: Mapping[Side, tuple[str, ...]] = {
     Side.LEFT: ("on the left", "to the left", "on the left side", "on your left side", "to the left of you", "at left"),
     Side.RIGHT: ("on the right", "to the right", "on the right side", "on your right side", "to the right of you"),
     Side.AHEAD: ("ahead", "ahead of you", "in front of you", "directly in front of you", "directly ahead of you"),
     Side.REAR: ("directly behind you", "in back of you"),
+    Side.AHEAD_LEFT: ("ahead to your left", "in front of you on the left", "ahead and to your left"),
+    Side.AHEAD_RIGHT: ("ahead to your right", "in front of you on the right", "ahead and to your right"),
+    Side.REAR_LEFT: ("behind you and to the left", "behind and to your left"),
+    Side.REAR_RIGHT: ("behind you and to the right", "behind and to your right"),
+}
+LEVELS: Mapping[Level, tuple[str, ...]] = {
+    Level.GROUND: ("on the ground",),
+    Level.WALL: ("on the wall", "hanging on the wall"),
+    Level.OVERHEAD: ("overhead", "high up"),
+}
+ALSO_LEVELS: Mapping[Level, tuple[str, ...]] = {
+    Level.GROUND: ("on the floor", "standing on the ground", "standing on the floor", "at ground level", "at floor level"),
+    Level.WALL: ("mounted on the wall", "fixed to the wall", "attached to the wall"),
+    Level.OVERHEAD: ("above your head", "on the ceiling", "hanging from the ceiling"),
 }
 
 SUPERLATIVES: Mapping[Superlative, tuple[str, ...]] = {
@@ -94,6 +112,9 @@ SHAPES: Mapping[Shape, tuple[str, ...]] = {
     Shape.FLAT: ("flat",),
     Shape.THIN: ("thin",),
     Shape.BOXY: ("boxy", "box-shaped"),
+    Shape.KNEE_HIGH: ("knee-high",),
+    Shape.WAIST_HIGH: ("waist-high",),
+    Shape.HEAD_HIGH: ("head-high",),
 }
 ALSO_SHAPES: Mapping[Shape, tuple[str, ...]] = {
     Shape.TALL: ("high", "vertical"),

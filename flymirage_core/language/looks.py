@@ -2,7 +2,7 @@
 
 from flymirage_core.annotation.boxes import ObjectBox
 from flymirage_core.language.meaning import Shape
-from flymirage_core.language.scene_relations import Truth, at_least, at_most
+from flymirage_core.language.scene_relations import ON_GROUND, Truth, at_least, at_most
 
 CONFUSABLE_COLOURS = (
     frozenset({"white", "beige", "cream", "light grey"}),
@@ -33,6 +33,14 @@ FURNITURE_LOW = (0.6, 0.8)
 """Metres of height up to which a thing is low."""
 THIN = (0.15, 0.25)
 """Metres of the shortest side up to which a thing is flat (lying) or thin (standing)."""
+
+
+HEIGHTS = {
+    Shape.KNEE_HIGH: ((0.4, 0.3), (0.6, 0.7)),
+    Shape.WAIST_HIGH: ((0.8, 0.7), (1.1, 1.2)),
+    Shape.HEAD_HIGH: ((1.5, 1.35), (1.85, 2.0)),
+}
+"""Metres of a thing's top above the ground: at least, and at most."""
 
 
 def coloured(name: str, seen: str) -> Truth:
@@ -73,3 +81,6 @@ def shaped(shape: Shape, box: ObjectBox) -> Truth:
             return min(at_most(shorter, THIN), at_most(shorter / min(longer, height), (0.2, 0.35)))
         case Shape.BOXY:
             return at_most(max(longer, height) / min(shorter, height), (1.25, 1.6))
+        case Shape.KNEE_HIGH | Shape.WAIST_HIGH | Shape.HEAD_HIGH:
+            least, most = HEIGHTS[shape]
+            return min(at_most(box.bottom, ON_GROUND), at_least(box.top, least), at_most(box.top, most))

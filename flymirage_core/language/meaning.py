@@ -7,14 +7,14 @@ At most one superlative (`Most`) picks among what the other terms leave. `resolv
 from dataclasses import dataclass
 from enum import Enum
 
-from flymirage_core.language.scene_relations import SEEN_FROM_START, Relation, Side
+from flymirage_core.language.scene_relations import SEEN_FROM_START, Level, Relation, Side
 
 UNNAMED = "object"
 """The noun of things for which nothing better is known; as a word it may mean anything."""
 
 
 class Shape(Enum):
-    """Proportions that one sees on a single object."""
+    """Proportions that one sees on a single object, and its height beside a person's."""
 
     TALL = "tall"
     SLIM = "slim"
@@ -23,6 +23,9 @@ class Shape(Enum):
     FLAT = "flat"
     THIN = "thin"
     BOXY = "boxy"
+    KNEE_HIGH = "knee-high"  # of what stands on the ground, as are the next two
+    WAIST_HIGH = "waist-high"
+    HEAD_HIGH = "head-high"
 
 
 class Size(Enum):
@@ -92,6 +95,13 @@ class Located:
 
 
 @dataclass(frozen=True)
+class Placed:
+    """On the ground, on a wall, or overhead."""
+
+    level: Level
+
+
+@dataclass(frozen=True)
 class Related:
     relation: Relation
     landmark: "Meaning"
@@ -110,7 +120,7 @@ class Most:
     rank: int = 1  # 2: the second nearest, the second from the left
 
 
-Term = Noun | Nameless | Colour | Material | Shaped | Sized | Located | Related | Between | Most
+Term = Noun | Nameless | Colour | Material | Shaped | Sized | Located | Placed | Related | Between | Most
 
 
 @dataclass(frozen=True)

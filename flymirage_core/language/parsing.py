@@ -17,6 +17,7 @@ from flymirage_core.language.meaning import (
     Located,
     Material,
     Most,
+    Placed,
     Shaped,
     Sized,
     Superlative,
@@ -79,6 +80,7 @@ _ADJECTIVES: dict[tuple[str, ...], Term] = {
 }
 _BEHIND_NOUN: dict[tuple[str, ...], Term] = {
     **{words: Located(side) for words, side in _SIDES.items()},
+    **{words: Placed(level) for words, level in phrases(lexicon.LEVELS, lexicon.ALSO_LEVELS).items()},
     **{words: Most(by) for words, by in phrases(lexicon.SUPERLATIVES_BEHIND).items()},
 }
 _COUNTED = phrases(lexicon.COUNTED_FROM)

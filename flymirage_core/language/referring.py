@@ -11,7 +11,7 @@ from itertools import combinations, islice, product
 import numpy as np
 
 from flymirage_core.annotation.boxes import ObjectBox
-from flymirage_core.language.looks import shaped
+from flymirage_core.language.looks import HEIGHTS, shaped
 from flymirage_core.language.meaning import (
     UNNAMED,
     Between,
@@ -21,6 +21,7 @@ from flymirage_core.language.meaning import (
     Meaning,
     Most,
     Noun,
+    Placed,
     Related,
     Shape,
     Shaped,
@@ -33,7 +34,7 @@ from flymirage_core.language.meaning import (
 from flymirage_core.language.nouns import is_generic
 from flymirage_core.language.prompts import PromptKind
 from flymirage_core.language.resolver import Resolver
-from flymirage_core.language.scene_relations import Relation, Side, Truth, outline_gap
+from flymirage_core.language.scene_relations import Level, Relation, Side, Truth, outline_gap
 
 NEAREST_LANDMARKS = 8
 """How many landmarks are tried for a target, most sensible first."""
@@ -146,7 +147,7 @@ class _Description:
         sized: list[Term] = [Sized(size) for size in Size]
         # Of a thing without a name the largest is looked for among all things, seen or not: when nothing else is left.
         self.sizes, self.last_sizes = (sized, largest) if self.nameless else ([*largest, *sized], [])
-        self.levels: list[Term] = []
+        self.levels: list[Term] = [p for level in Level if self._holds(p := Placed(level))]
         self._place_list: list[Term] | None = None
 
     def object_centred(self) -> Iterator[Meaning]:
@@ -287,7 +288,7 @@ def _clashes(term: Term, kernel: Terms) -> bool:
     shapes = {t.shape for t in kernel if isinstance(t, Shaped)}
     match term:
         case Most(Superlative.TALLEST | Superlative.SHORTEST):
-            return bool(shapes & {Shape.TALL, Shape.SLIM, Shape.LOW, Shape.FLAT})
+            return bool(shapes & {Shape.TALL, Shape.SLIM, Shape.LOW, Shape.FLAT, *HEIGHTS})
         case Most(Superlative.LONGEST):
             return Shape.LONG in shapes
     return False

@@ -21,6 +21,7 @@ from flymirage_core.language.meaning import (
     Most,
     Nameless,
     Noun,
+    Placed,
     Related,
     Shaped,
     Size,
@@ -30,7 +31,7 @@ from flymirage_core.language.meaning import (
     egocentric,
 )
 from flymirage_core.language.nouns import is_generic, named
-from flymirage_core.language.scene_relations import StartPose, Truth, between, on_side, outline_gap, related
+from flymirage_core.language.scene_relations import StartPose, Truth, at_level, between, on_side, outline_gap, related
 
 Truths = NDArray[np.int8]
 Measure = Callable[[ObjectBox], float]
@@ -115,6 +116,8 @@ class Resolver:
                 return lambda box: shaped(shape, box)
             case Located(side):
                 return lambda box: on_side(side, box, self.start)
+            case Placed(level):
+                return lambda box: at_level(level, box, self.boxes)
             case Related(relation, landmark):
                 marks = self._marks(landmark)
                 return lambda box: max(

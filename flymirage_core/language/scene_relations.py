@@ -5,6 +5,7 @@ what is certain, and must be wrong of every other object beyond argument; `Truth
 World frame (z up), metres; a pair of numbers below is (certain within, possible within).
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum, IntEnum
 
@@ -45,6 +46,16 @@ SIDE_ANGLE = (np.radians(20.0), np.radians(8.0))
 SIDE_ANGLE_MOST = (np.radians(145.0), np.radians(170.0))
 AHEAD_ANGLE = (np.radians(15.0), np.radians(28.0))
 REAR_ANGLE = (np.radians(155.0), np.radians(135.0))
+HALF_AHEAD_MOST = (np.radians(65.0), np.radians(85.0))
+HALF_REAR = (np.radians(115.0), np.radians(95.0))
+HALF_REAR_MOST = (np.radians(162.0), np.radians(174.0))
+"""Ahead, or behind, and to one side."""
+ON_GROUND = (0.15, 0.3)
+"""Metres of a thing's underside above the ground."""
+ON_WALL = (1.0, 0.5)
+OVERHEAD = (2.0, 1.6)
+WALL_DEPTH = (0.15, 0.3)
+"""Metres from front to back of what hangs on a wall."""
 
 OPEN_BENEATH = ("table", "desk", "bench", "counter", "workbench", "piano", "awning", "canopy")
 """Head nouns of things that one can be under although their boxes reach the floor."""
@@ -83,6 +94,18 @@ class Side(Enum):
     RIGHT = "on your right"
     AHEAD = "straight ahead"
     REAR = "behind you"
+    AHEAD_LEFT = "ahead of you on the left"
+    AHEAD_RIGHT = "ahead of you on the right"
+    REAR_LEFT = "behind you on the left"
+    REAR_RIGHT = "behind you on the right"
+
+
+class Level(Enum):
+    """At what height a thing is, and on what."""
+
+    GROUND = "on the ground"
+    WALL = "on the wall"
+    OVERHEAD = "overhead"
 
 
 @dataclass(frozen=True)
@@ -202,6 +225,31 @@ def on_side(side: Side, thing: ObjectBox, start: StartPose) -> Truth:
             return at_most(abs(bearing), AHEAD_ANGLE)
         case Side.REAR:
             return at_least(abs(bearing), REAR_ANGLE)
+        case Side.AHEAD_LEFT:
+            return min(at_least(bearing, SIDE_ANGLE), at_most(bearing, HALF_AHEAD_MOST))
+        case Side.AHEAD_RIGHT:
+            return min(at_least(-bearing, SIDE_ANGLE), at_most(-bearing, HALF_AHEAD_MOST))
+        case Side.REAR_LEFT:
+            return min(at_least(bearing, HALF_REAR), at_most(bearing, HALF_REAR_MOST))
+        case Side.REAR_RIGHT:
+            return min(at_least(-bearing, HALF_REAR), at_most(-bearing, HALF_REAR_MOST))
+
+
+def at_level(level: Level, thing: ObjectBox, others: Iterable[ObjectBox]) -> Truth:
+    """Whether the thing stands on the ground, hangs flat and unsupported (so on a wall), or is overhead.
+
+    What is thin and rests on something may lean on a wall; how far the wall is no box tells.
+    """
+    match level:
+        case Level.GROUND:
+            return at_most(thing.bottom, ON_GROUND)
+        case Level.OVERHEAD:
+            return at_least(thing.bottom, OVERHEAD)
+        case Level.WALL:
+            held = any(on(thing, other) > Truth.NO for other in others if other is not thing)
+            thin = at_most(min(thing.size[:2]), WALL_DEPTH)
+            doubt = Truth.MAYBE if held or at_level(Level.OVERHEAD, thing, ()) > Truth.NO else Truth.YES
+            return min(thin, at_least(thing.bottom, ON_WALL), doubt)
 
 
 def outline_gap(one: ObjectBox, other: ObjectBox) -> float:

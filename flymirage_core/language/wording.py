@@ -16,6 +16,7 @@ from flymirage_core.language.meaning import (
     Material,
     Meaning,
     Most,
+    Placed,
     Related,
     Shaped,
     Sized,
@@ -163,6 +164,7 @@ class Speaker:
     def _place(self, meaning: Meaning) -> str:
         """What follows the noun, a blank before it; the drone's side first, lest it seem the landmark's."""
         places = [self.pick(lexicon.SIDES[t.side]) for t in meaning.terms if isinstance(t, Located)]
+        places += [self.pick(lexicon.LEVELS[t.level]) for t in meaning.terms if isinstance(t, Placed)]
         for term in meaning.terms:
             match term:
                 case Related(relation, landmark):
