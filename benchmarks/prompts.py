@@ -1,10 +1,12 @@
 """Prompts of finished scenes, written anew: how many there are, how they are spread, and pictures to read them by.
 
-    python benchmarks/prompts.py STORE [--sheets FOLDER] [--read 100]
+    python benchmarks/prompts.py HOME... [--sheets FOLDER] [--read 100]
 
-For each scene: boxes, those without a name, kept flights, those with two prompts or more, long prompts, CPU s. Then
-the share of the commonest sentence. With ``--sheets``, so many prompts drawn evenly over scenes, each with the flight's
-first and last picture and its target outlined, for a person to say: would I find it?
+Each HOME is a project's folder (`flymirage grow`) or its store. For each scene: boxes, those without a name, kept
+flights, those with two prompts or more, long prompts, CPU s. Then the share of flights with two prompts, also of those
+to things with a name and to things without, and of the commonest sentence. With ``--sheets``, so many prompts drawn
+evenly over scenes, each with the flight's first and last picture and its target outlined, for a person to say: would I
+find it?
 """
 
 import argparse
@@ -33,31 +35,47 @@ ASKED_SHARE, ASKED_FRAME = 0.9, 0.1
 """Of kept flights with two prompts or more; of prompts with the commonest sentence."""
 CELL = (256, 192)
 PER_SHEET = (5, 3)  # rows, columns
+Written = tuple[Path, str, Prompt]  # store, scene, prompt
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("store", type=Path)
+    parser.add_argument("homes", type=Path, nargs="+")
     parser.add_argument("--sheets", type=Path)
     parser.add_argument("--read", type=int, default=100)
     options = parser.parse_args()
-    written: list[tuple[str, Prompt]] = []
-    kept = several = 0
-    for path in sorted((options.store / "products" / "prompts").iterdir()):
-        prompts, of_kept = scene(options.store, path.name)
-        written += [(path.name, p) for p in prompts]
-        kept, several = kept + len(of_kept), several + sum(n > 1 for n in of_kept)
-    frames = Counter(frame_of(p.text) for _, p in written)
+    written: list[Written] = []
+    counts: list[tuple[bool, int]] = []
+    for store in (store_of(home) for home in options.homes):
+        for path in sorted((store / "products" / "prompts").iterdir()):
+            prompts, of_kept = scene(store, path.name)
+            written += [(store, path.name, p) for p in prompts]
+            counts += of_kept
+    frames = Counter(frame_of(p.text) for *_, p in written)
     commonest, count = frames.most_common(1)[0]
-    print(f"\n{len(written)} prompts, {len(written) / kept:.2f} a kept flight", Counter(p.kind for _, p in written))
-    verdict(several / kept >= ASKED_SHARE, f"two prompts or more for {several / kept:.1%} of {kept} kept flights")
+    kinds = Counter(p.kind for *_, p in written)
+    print(f"\n{len(written)} prompts, {len(written) / len(counts):.2f} a kept flight; {dict(kinds)}")
+    share = several(counts)
+    verdict(share >= ASKED_SHARE, f"two prompts or more for {share:.1%} of {len(counts)} kept flights")
+    for what, nameless in (("with", False), ("without", True)):
+        chosen = [c for c in counts if c[0] is nameless]
+        print(f"{'':8}{several(chosen):.1%} of {len(chosen)} to things {what} a name")
     verdict(count / len(written) <= ASKED_FRAME, f"commonest sentence {commonest!r}: {count / len(written):.1%}")
     if options.sheets:
-        sheets(options.store, written, options.read, options.sheets)
+        sheets(written, options.read, options.sheets)
 
 
-def scene(store: Path, name: str) -> tuple[tuple[Prompt, ...], list[int]]:
-    """The scene's prompts, and how many each kept flight has; prints a line."""
+def store_of(home: Path) -> Path:
+    return home / ".flymirage" / "store" if (home / ".flymirage").exists() else home
+
+
+def several(counts: list[tuple[bool, int]]) -> float:
+    """Share of flights with two prompts or more."""
+    return sum(n > 1 for _, n in counts) / max(len(counts), 1)
+
+
+def scene(store: Path, name: str) -> tuple[tuple[Prompt, ...], list[tuple[bool, int]]]:
+    """The scene's prompts, and of each kept flight whether its target has no name, and its count; prints a line."""
     boxes, verdicts = (
         BoxMap.load(folder(store, "boxes", name)),
         QualityVerdicts.load(folder(store, "quality_verdict", name)),
@@ -67,12 +85,14 @@ def scene(store: Path, name: str) -> tuple[tuple[Prompt, ...], list[int]]:
     prompts = OfflinePrompter().write(name, frames, boxes, flights, verdicts)
     spent = time.process_time() - begun
     counts = Counter(p.flight_id for p in prompts)
-    of_kept = [counts[i] for i in verdicts.kept]
+    kept = set(verdicts.kept)
+    goals = {f.flight_id: boxes.by_id(f.object_id) for f in flights if f.flight_id in kept}
+    of_kept = [(is_generic(goal.label), counts[i]) for i, goal in goals.items()]
     nameless = sum(is_generic(b.label) for b in boxes.boxes)
     print(
         f"{name:16s} {len(boxes):3d} boxes, {nameless} without a name; kept {len(of_kept)} of {len(verdicts)}; ", end=""
     )
-    print(f"2+ prompts {sum(n > 1 for n in of_kept)}, none {of_kept.count(0)}; ", end="")
+    print(f"2+ prompts {sum(n > 1 for _, n in of_kept)}, none {sum(n == 0 for _, n in of_kept)}; ", end="")
     print(f"long {len(prompts.long_prompts)}; {spent:.1f} s")
     return prompts.prompts, of_kept
 
@@ -98,16 +118,16 @@ def verdict(met: bool, text: str) -> None:
     print(f"{'met' if met else 'NOT MET':8}{text}")
 
 
-def sheets(store: Path, written: list[tuple[str, Prompt]], count: int, out: Path) -> None:
+def sheets(written: list[Written], count: int, out: Path) -> None:
     """Numbered prompts with the first and last picture of their flights."""
     out.mkdir(parents=True, exist_ok=True)
-    generator, scenes = rng("benchmark", "prompts", 0), sorted({name for name, _ in written})
-    chosen: list[tuple[str, Prompt]] = []
-    for name in scenes:
-        own = [entry for entry in written if entry[0] == name]
+    generator, scenes = rng("benchmark", "prompts", 0), sorted({entry[:2] for entry in written})
+    chosen: list[Written] = []
+    for scene_of in scenes:
+        own = [entry for entry in written if entry[:2] == scene_of]
         picked = generator.permutation(len(own))[: -(-count // len(scenes))]
         chosen += [own[i] for i in sorted(picked.tolist())]
-    cells = [cell(store, number, *entry) for number, entry in enumerate(chosen[:count])]
+    cells = [cell(number, *entry) for number, entry in enumerate(chosen[:count])]
     rows, columns = PER_SHEET
     for i in range(0, len(cells), rows * columns):
         page = cells[i : i + rows * columns]
@@ -116,7 +136,7 @@ def sheets(store: Path, written: list[tuple[str, Prompt]], count: int, out: Path
         cv2.imwrite(str(out / f"prompts{i // (rows * columns)}.png"), np.vstack(lines)[:, :, ::-1])
 
 
-def cell(store: Path, number: int, name: str, prompt: Prompt) -> np.ndarray:
+def cell(number: int, store: Path, name: str, prompt: Prompt) -> np.ndarray:
     flights = Trajectories.load(folder(store, "trajectories", name))
     flight = next(f for f in flights if f.flight_id == prompt.flight_id)
     target = BoxMap.load(folder(store, "boxes", name)).by_id(flight.object_id)

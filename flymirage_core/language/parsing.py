@@ -228,7 +228,7 @@ def _undo_adjective(phrase: Phrase, words: list[str]) -> None:
     """ "the light" names a light; "the glass on the table" a glass."""
     if not words and phrase.terms:
         last = phrase.terms[-1]
-        nouns: dict[Term, str] = {Material("glass"): "glass", Material("paper"): "paper"}
+        nouns: dict[Term, str] = {Material(name): name for name in ("glass", "paper", "bamboo")}
         if last in nouns:
             words.append(nouns[last])
             phrase.terms.pop()
