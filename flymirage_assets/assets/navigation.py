@@ -24,7 +24,7 @@ def navigation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
     group = "navigation_and_collection"
 
     @product_asset(
-        version="2", group=group, settings=settings, sections=["occupancy", "tasks"], draw=previews.task_sets
+        version="3", group=group, settings=settings, sections=["occupancy", "tasks"], draw=previews.task_sets
     )
     def task_sets(stage: Stage, world: World, boxes: BoxMap) -> TaskSets:
         """N_s sets of N_o targets, each accepted by position, visibility, waypoint-safety and distance checks."""

@@ -3,6 +3,7 @@
 The paper's four checks are in `target_checks`; planning the flights is not here.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -25,7 +26,9 @@ Float64 = NDArray[np.float64]
 Point = tuple[float, float, float]
 
 STARTS_PER_SET: Final = 5
-"""Starts that are tried until one has a first target."""
+"""Starts that are tried until one leads to N_o targets."""
+TRIED_PER_TARGET: Final = 4
+"""A start is given up after this many targets for each of the N_o."""
 START_TRIALS: Final = 50
 """Random free points that are tried until one is safe."""
 NEARNESS: Final = 8.0
@@ -94,12 +97,13 @@ class TaskSets:
 def generate_task_sets(
     grid: OccupancyGrid, boxes: BoxMap, centre: ArrayLike, settings: TaskSettings, generator: np.random.Generator
 ) -> TaskSets:
-    """N_s sets of up to N_o targets, one after the other, each from where the last one ended.
+    """N_s sets of N_o targets, one after the other, each from where the last one ended.
 
     Set 0 starts at the scene's centre c (3,), or the nearest point to it where the drone has room; the others at random
     points that can be reached from there. Candidates are the boxes that are sensible targets; those that served least
-    often come first, so that objects are used evenly, and of those near ones tend to. No object follows itself. A set
-    that finds no further target ends early; one that finds none at all is left out.
+    often come first, so that objects are used evenly, and of those near ones tend to. No object follows itself. After a
+    target that nothing can follow another one is taken, and after a start without a whole set another start; if none
+    has one, the longest is kept, and a set without any target is left out.
 
     Args:
         grid: not inflated.
@@ -114,12 +118,14 @@ def generate_task_sets(
     draw = _Draw([box for box in boxes if is_sensible_target(box)], space, settings, generator)
     tasks: list[Task] = []
     for set_index in range(settings.sets):
+        legs: list[Task] = []
         for trial in range(STARTS_PER_SET):
             drone = home if set_index == trial == 0 else _random_start(space, settings, generator)
-            legs = _one_set(set_index, drone, draw)
-            if legs:
-                tasks += legs
+            legs = max(legs, _one_set(set_index, drone, draw), key=len)
+            if len(legs) == settings.targets_per_set:
                 break
+        draw.uses.update(leg.object_id for leg in legs)
+        tasks += legs
     return TaskSets(tuple(tasks), draw.rejections)
 
 
@@ -130,21 +136,20 @@ class _Draw:
         self, candidates: list[ObjectBox], space: TaskSpace, settings: TaskSettings, generator: np.random.Generator
     ) -> None:
         self.candidates, self.space, self.settings, self.generator = candidates, space, settings, generator
-        self.uses = dict.fromkeys((box.object_id for box in candidates), 0)
+        self.uses: Counter[int] = Counter()
         self.rejections: dict[str, int] = dict.fromkeys(get_args(Reason), 0)
 
-    def next_target(self, drone: Float64, but: int | None) -> tuple[ObjectBox, Float64] | None:
-        """An accepted object other than ``but`` and its target point (3,); None if all are rejected."""
+    def targets(self, drone: Float64, but: int | None) -> Iterator[tuple[ObjectBox, Float64]]:
+        """Accepted objects other than ``but`` and their target points (3,), each sought when it is asked for."""
         for n in self._order(drone):
             box = self.candidates[n]
             if box.object_id == but:
                 continue
             answer = check_target(box, drone, self.space, self.settings)
-            if not isinstance(answer, str):
-                self.uses[box.object_id] += 1
-                return box, answer
-            self.rejections[answer] += 1
-        return None
+            if isinstance(answer, str):
+                self.rejections[answer] += 1
+            else:
+                yield box, answer
 
     def _order(self, drone: Float64) -> NDArray[np.intp]:
         """Candidates as they are to be tried: by uses, then drawn one after the other with weights exp(-d / NEARNESS).
@@ -158,16 +163,28 @@ class _Draw:
 
 
 def _one_set(set_index: int, start: Float64, draw: _Draw) -> list[Task]:
-    tasks: list[Task] = []
-    drone, last = start, None
-    while len(tasks) < draw.settings.targets_per_set:
-        target = draw.next_target(drone, last)
+    """N_o targets from ``start``, found depth first; the longest chain that was tried if there is no whole one."""
+    wanted = draw.settings.targets_per_set
+    chain: list[Task] = []
+    longest: list[Task] = []
+    choices = [draw.targets(start, None)]  # the ways on from the start and from each target of the chain
+    tried = 0
+    while choices and len(longest) < wanted and tried < TRIED_PER_TARGET * wanted:
+        target = next(choices[-1], None)
         if target is None:
-            break
+            choices.pop()
+            draw.uses.subtract(leg.object_id for leg in chain[-1:])
+            del chain[-1:]
+            continue
+        tried += 1
         box, point = target
-        tasks.append(Task(set_index, len(tasks), box.object_id, _as_point(drone), _as_point(point)))
-        drone, last = point, box.object_id
-    return tasks
+        drone = chain[-1].target_point if chain else _as_point(start)
+        chain.append(Task(set_index, len(chain), box.object_id, drone, _as_point(point)))
+        draw.uses[box.object_id] += 1
+        choices.append(draw.targets(point, box.object_id))
+        longest = max(longest, list(chain), key=len)
+    draw.uses.subtract(leg.object_id for leg in chain)
+    return longest
 
 
 def _random_start(space: TaskSpace, settings: TaskSettings, generator: np.random.Generator) -> Float64:

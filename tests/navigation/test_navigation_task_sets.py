@@ -1,4 +1,5 @@
 from dataclasses import replace
+from functools import reduce
 
 import numpy as np
 import pytest
@@ -164,6 +165,16 @@ def test_a_set_without_any_valid_target_is_given_up():
     assert len(none) == 0
     lonely = generate_task_sets(room(), BoxMap((CABINET,)), DRONE, SETTINGS, np.random.default_rng(0))
     assert {t.leg_index for t in lonely} == {0}  # nothing but the same object would follow
+
+
+def test_an_object_from_which_nothing_else_is_seen_is_only_ever_a_sets_last():
+    corridor = fill(fill(empty_room(10, 6, 2.6), (6.0, 2.1, 0.0), (10.0, 2.2, 2.6)), (6.0, 4.0, 0.0), (10.0, 4.1, 2.6))
+    at_its_end = thing(0, (9.6, 3.1, 1.2), (0.3, 0.3, 0.3))
+    others = [thing(n, (x, y, 1.2), (0.3, 0.3, 0.3)) for n, (x, y) in enumerate([(3, 0.6), (3, 5.4), (5.4, 0.6)], 1)]
+    grid, boxes = reduce(put, (at_its_end, *others), corridor), BoxMap((at_its_end, *others))
+    tasks = generate_task_sets(grid, boxes, (2.0, 3.1, 1.2), TaskSettings(sets=6), np.random.default_rng(0))
+    assert len(tasks) == 6 * TaskSettings().targets_per_set
+    assert {t.leg_index for t in tasks if t.object_id == 0} == {TaskSettings().targets_per_set - 1}
 
 
 def test_a_centre_without_room_for_the_drone_is_an_error():
