@@ -6,7 +6,16 @@ from flymirage_core.annotation.boxes import ObjectBox
 from flymirage_core.language.looks import shaped
 from flymirage_core.language.meaning import UNNAMED, Shape
 from flymirage_core.language.resolver import Resolver
-from flymirage_core.language.scene_relations import Relation, Side, Truth, on_side, outline_gap, related
+from flymirage_core.language.scene_relations import (
+    Level,
+    Relation,
+    Side,
+    Truth,
+    at_level,
+    on_side,
+    outline_gap,
+    related,
+)
 
 NEIGHBOURS = 12
 """So many nearest things are told with their relations."""
@@ -25,9 +34,11 @@ def facts_about(resolver: Resolver, target_id: int) -> str:
     x, y, z = target.size
     looks = ", ".join(s.value for s in Shape if shaped(s, target) is Truth.YES) or "no special shape"
     sides = ", ".join(s.value for s in Side if on_side(s, target, resolver.start) is Truth.YES) or "none for sure"
+    levels = ", ".join(v.value for v in Level if at_level(v, target, resolver.boxes) is Truth.YES) or "unclear"
     lines = [
         f"Target: {name_of(target)}; {looks}; {max(x, y):.1f} m long, {min(x, y):.1f} m deep, {z:.1f} m high.",
         f"Where it is as seen from the drone at its start: {sides}.",
+        f"Where it is in the room: {levels}.",
         _same_kind(resolver, target),
         *_neighbourhood(resolver, target),
         _everything(resolver),

@@ -66,7 +66,13 @@ LEVELS: Mapping[Level, tuple[str, ...]] = {
     Level.OVERHEAD: ("overhead", "high up"),
 }
 ALSO_LEVELS: Mapping[Level, tuple[str, ...]] = {
-    Level.GROUND: ("on the floor", "standing on the ground", "standing on the floor", "at ground level", "at floor level"),
+    Level.GROUND: (
+        "on the floor",
+        "standing on the ground",
+        "standing on the floor",
+        "at ground level",
+        "at floor level",
+    ),
     Level.WALL: ("mounted on the wall", "fixed to the wall", "attached to the wall"),
     Level.OVERHEAD: ("above your head", "on the ceiling", "hanging from the ceiling"),
 }

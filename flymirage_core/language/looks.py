@@ -31,6 +31,8 @@ CONFUSABLE_MATERIALS = (
 
 FURNITURE_LOW = (0.6, 0.8)
 """Metres of height up to which a thing is low."""
+LOW_BOTTOM = (0.3, 0.6)
+"""Metres of its underside above the ground: no lamp at the ceiling is low, however flat it is."""
 THIN = (0.15, 0.25)
 """Metres of the shortest side up to which a thing is flat (lying) or thin (standing)."""
 
@@ -72,7 +74,8 @@ def shaped(shape: Shape, box: ObjectBox) -> Truth:
         case Shape.SLIM:
             return at_least(height / longer, (3.0, 2.0))
         case Shape.LOW:
-            return min(at_most(height / longer, (0.45, 0.65)), at_most(height, FURNITURE_LOW))
+            standing = at_most(box.bottom, LOW_BOTTOM)
+            return min(at_most(height / longer, (0.45, 0.65)), at_most(height, FURNITURE_LOW), standing)
         case Shape.LONG:
             return min(at_least(longer / shorter, (2.5, 1.8)), at_least(longer / height, (1.5, 1.1)))
         case Shape.FLAT:

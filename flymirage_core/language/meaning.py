@@ -22,10 +22,10 @@ class Shape(Enum):
     LONG = "long"
     FLAT = "flat"
     THIN = "thin"
-    BOXY = "boxy"
     KNEE_HIGH = "knee-high"  # of what stands on the ground, as are the next two
     WAIST_HIGH = "waist-high"
     HEAD_HIGH = "head-high"
+    BOXY = "boxy"  # what is in the box need not be, so it is said last
 
 
 class Size(Enum):

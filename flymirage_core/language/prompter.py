@@ -49,7 +49,7 @@ class OfflinePrompter:
     refined, and at last refused.
     """
 
-    name: str = "offline 3"
+    name: str = "offline 4"
 
     def write(
         self, scene: str, frames: Frames, boxes: BoxMap, flights: Trajectories, verdicts: QualityVerdicts

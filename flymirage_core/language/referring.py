@@ -64,6 +64,8 @@ BY_SIZE = (
     Superlative.HIGHEST,
     Superlative.LOWEST,
 )
+LONGISH = 1.5
+"""Ratio of longer side to height from which on a thing has a length to speak of."""
 TELLING_SHAPES = (Shape.TALL, Shape.LOW, Shape.LONG)
 """Of things with a name: every picture is thin, and hardly anybody calls an armchair boxy."""
 FIRSTS: Sequence[Term] = [
@@ -143,7 +145,10 @@ class _Description:
         self.noun = Noun(UNNAMED if self.nameless else target.label)
         self.sides: list[Term] = [s for side in Side if self._holds(s := Located(side))]
         self.looks = _looks(target)
-        largest: list[Term] = [Most(by) for by in (BY_SIZE[:3] if self.nameless else BY_SIZE)]
+        longish = max(target.size[:2]) >= LONGISH * target.size[2]
+        largest: list[Term] = [
+            Most(by) for by in (BY_SIZE[:3] if self.nameless else BY_SIZE) if longish or by is not Superlative.LONGEST
+        ]
         sized: list[Term] = [Sized(size) for size in Size]
         # Of a thing without a name the largest is looked for among all things, seen or not: when nothing else is left.
         self.sizes, self.last_sizes = (sized, largest) if self.nameless else ([*largest, *sized], [])
@@ -240,7 +245,8 @@ class _Description:
             if box is self.target or gap > LANDMARK_REACH or max(box.size) < LEAST_LANDMARK:
                 continue
             if self.nameless or box.label != self.target.label:
-                cost = gap + 0.5 / max(box.size) + _doubt(box)
+                rise = max(box.bottom - self.target.top, self.target.bottom - box.top, 0.0)
+                cost = gap + rise + 0.5 / max(box.size) + _doubt(box)
                 near.append((cost, box.object_id, box))
         near.sort(key=lambda entry: entry[:2])
         called = ((_landmark_phrase(box, self.resolver), box) for _, _, box in near)
@@ -291,6 +297,8 @@ def _clashes(term: Term, kernel: Terms) -> bool:
             return bool(shapes & {Shape.TALL, Shape.SLIM, Shape.LOW, Shape.FLAT, *HEIGHTS})
         case Most(Superlative.LONGEST):
             return Shape.LONG in shapes
+        case Sized():
+            return bool(shapes & {Shape.TALL, Shape.SLIM, *HEIGHTS})
     return False
 
 

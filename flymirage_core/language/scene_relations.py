@@ -19,6 +19,8 @@ SUPPORT_GAP = (0.12, 0.3)
 """Metres between a thing's underside and the top of what it stands on: about twice the error of a box's faces."""
 OVERHANG = (0.0, 0.15)
 """Metres by which a thing's centre may lie outside of what it stands on."""
+PICTURE_DEPTH, PICTURE_HEIGHT = 0.1, 0.3
+"""Metres: at most, and at least, of what may hang on a wall."""
 UNDER_RISE = (0.15, 0.3)
 """Metres by which a thing under a table may reach into the table's lower half, or stand above the table's foot."""
 ABOVE_GAP = (1.2, 2.0)
@@ -156,10 +158,15 @@ def related(relation: Relation, thing: ObjectBox, landmark: ObjectBox, start: St
 
 
 def on(thing: ObjectBox, landmark: ObjectBox) -> Truth:
-    """It rests on the landmark's top, its centre over it, and is not the larger of the two."""
+    """It rests on the landmark's top, its centre over it, and is not the larger of the two.
+
+    A thin upright thing there may as well hang on the wall behind.
+    """
+    hangs = min(thing.size[:2]) <= PICTURE_DEPTH and thing.size[2] >= PICTURE_HEIGHT
     return min(
         at_most(abs(thing.bottom - landmark.top), SUPPORT_GAP),
         at_most(_outside_outline(thing, landmark), OVERHANG),
+        Truth.MAYBE if hangs else Truth.YES,
         Truth.YES if _area(thing) <= _area(landmark) else Truth.NO,
     )
 

@@ -11,14 +11,36 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
-from flymirage_core.language.looks import coloured
-from flymirage_core.language.meaning import Between, Colour, Located, Meaning, Most, Noun, Related, Superlative
+from flymirage_core.language.looks import coloured, shaped
+from flymirage_core.language.meaning import (
+    Between,
+    Colour,
+    Located,
+    Meaning,
+    Most,
+    Noun,
+    Related,
+    Shape,
+    Shaped,
+    Superlative,
+)
 from flymirage_core.language.nouns import named
 from flymirage_core.language.prompter import OfflinePrompter
 from flymirage_core.language.prompts import Prompt
 from flymirage_core.language.referring import expressions
 from flymirage_core.language.resolver import Resolver
-from flymirage_core.language.scene_relations import Relation, Side, StartPose, Truth, next_to, on, related, under
+from flymirage_core.language.scene_relations import (
+    Level,
+    Relation,
+    Side,
+    StartPose,
+    Truth,
+    at_level,
+    next_to,
+    on,
+    related,
+    under,
+)
 from flymirage_core.language.verdicts import QualityVerdicts, Verdict
 from flymirage_core.language.wording import Speaker
 from flymirage_core.navigation.trajectories import Trajectories
@@ -80,6 +102,27 @@ class TestReadingBack:
         assert under(crate, desk) is Truth.YES
         assert under(desk, crate) is Truth.NO
         assert on(desk, crate) is Truth.NO
+
+    def test_a_thin_thing_up_there_hangs_on_the_wall_unless_something_holds_it(self) -> None:
+        picture, sign = box(0, "picture", (2, 3, 1.6), (0.8, 0.05, 0.6)), box(1, "sign", (2, 1, 2.4), (0.8, 0.05, 0.3))
+        shelf, frame = box(2, "shelf", (2, -3, 0.5), (1, 0.4, 1)), box(3, "frame", (2, -3, 1.3), (0.5, 0.05, 0.6))
+        boxes = (picture, sign, shelf, frame)
+        assert [at_level(Level.WALL, b, boxes) for b in boxes] == [Truth.YES, Truth.MAYBE, Truth.NO, Truth.MAYBE]
+        assert on(frame, shelf) is Truth.MAYBE, "it may as well hang behind the shelf"
+        assert [at_level(Level.OVERHEAD, b, boxes) for b in boxes] == [Truth.NO, Truth.YES, Truth.NO, Truth.NO]
+        assert at_level(Level.GROUND, shelf, boxes) is Truth.YES
+
+    def test_a_lamp_at_the_ceiling_is_not_low_however_flat(self) -> None:
+        assert shaped(Shape.LOW, box(0, "bench", (2, 0, 0.2), (1.2, 0.4, 0.4))) is Truth.YES
+        assert shaped(Shape.LOW, box(0, "ceiling light", (2, 0, 2.9), (1.2, 0.4, 0.1))) is Truth.NO
+
+    @pytest.mark.parametrize(("top", "shape"), [(0.5, "knee-high"), (0.95, "waist-high"), (1.7, "head-high")])
+    def test_heights_are_said_beside_a_persons(self, top: float, shape: str) -> None:
+        thing = box(0, "object", (2, 0, top / 2), (0.6, 0.6, top))
+        heights = (Shape.KNEE_HIGH, Shape.WAIST_HIGH, Shape.HEAD_HIGH)
+        assert [s for s in heights if shaped(s, thing) is Truth.YES] == [Shape(shape)]
+        on_a_table = box(0, "object", (2, 0, 0.8 + top / 2), (0.6, 0.6, top))
+        assert all(shaped(s, on_a_table) is Truth.NO for s in heights)
 
     def test_between_needs_the_middle(self) -> None:
         boxes = (
@@ -146,12 +189,16 @@ class TestRefusal:
 
     def test_a_thing_without_a_name_is_never_called_for_by_name_alone(self) -> None:
         found = kinds(box(0, "object", (2, 0, 0.4), colour="red"), box(1, "table", (2.9, 0, 0.4), colour="white"))
-        assert "object_centred" not in found
+        assert all(any(isinstance(t, Colour | Shaped | Related) for t in m.terms) for m in found.values())
         assert found["appearance"].terms[0] == Colour("red")
 
     def test_no_relation_to_an_unnamed_thing_is_told(self) -> None:
         found = kinds(chair(0, 2, 0), box(1, "object", (2.8, 0, 0.4)))
         assert "relative" not in found
+
+    def test_of_several_alike_the_nearest_on_one_side_is_meant(self) -> None:
+        found = kinds(chair(0, 2, 1.5), chair(1, 5, 4.0), chair(2, 1.5, -1.2), chair(3, 5, -4.0))
+        assert found["object_centred"] == Meaning((Noun("chair"), Located(Side.LEFT), Most(Superlative.NEAREST)))
 
     def test_a_dropped_flight_gets_no_prompt(self) -> None:
         assert written(furnished_room(), 4, keep=False) == []
@@ -213,7 +260,7 @@ class TestWording:
             "the colour of its books is nobody's"
         )
         assert len({p.text for p in prompts}) == 3
-        assert all(p.text[0].isupper() and p.text[-1] in ".?" and p.writer == "offline 3" for p in prompts)
+        assert all(p.text[0].isupper() and p.text[-1] in ".?" and p.writer == "offline 4" for p in prompts)
 
     def test_the_same_flight_is_always_told_the_same(self) -> None:
         assert written(furnished_room(), 4) == written(furnished_room(), 4)

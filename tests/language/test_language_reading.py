@@ -1,5 +1,7 @@
 """Reading instructions back: any writer's text, against the boxes and from the drone's start."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from filmed_room import box
@@ -52,6 +54,29 @@ def outcome(text: str, target: int) -> Outcome:
 def test_plain_english_is_read_as_its_target(text: str, target: int) -> None:
     reading = read_back(text, HERE, target)
     assert reading.outcome is Outcome.TARGET and reading.objects == (target,) and reading.reason == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "target"),
+    [
+        ("Fly to the cardboard box.", 0),
+        ("Go to the cardboard box on the floor.", 0),
+        ("Find the low dark green bookshelf.", 1),
+        ("Go to the second low bookshelf from the left.", 2),
+        ("Fly to the white object on the wall.", 3),
+        ("Head for the waist-high white object behind you on the left.", 4),
+        ("Fly to the white object hanging on the wall ahead of you.", 3),
+    ],
+)
+def test_adjectives_that_are_part_of_a_name_and_places_on_wall_and_floor(text: str, target: int) -> None:
+    boxes = (
+        replace(box(0, "cardboard box", (3.0, -2.0, 0.2), (0.4, 0.4, 0.4), "brown"), material="paper"),
+        box(1, "low bookshelf", (4.0, 2.0, 0.3), (1.4, 0.4, 0.6), "dark green"),
+        box(2, "low bookshelf", (4.0, -1.0, 0.4), (1.2, 0.4, 0.8), "red"),
+        box(3, "object", (5.0, 0.0, 1.6), (0.05, 0.8, 0.6), "white"),
+        box(4, "object", (-2.0, 1.5, 0.5), (0.5, 0.5, 1.0), "white"),
+    )
+    assert read_back(text, Resolver(boxes, HERE.start), target).outcome is Outcome.TARGET
 
 
 def test_two_chairs_make_a_chair_ambiguous_and_the_reason_names_both() -> None:
