@@ -22,6 +22,11 @@ SPLIT_MEANINGS = {
     "test_unseen_category": "whole kinds of places held out",
     "test_unseen_instruction": "flights of training scenes whose every instruction is held out",
 }
+KIND_MEANINGS = {
+    "object_centred": "by what it is",
+    "relative": "by what it is near",
+    "appearance": "by how it looks",
+}
 CITATION = """```bibtex
 @article{flymirage2026,
   title   = {FlyMirage: A Fully Automated Generation Pipeline for Diverse and Scalable UAV Flight Data via
@@ -114,12 +119,12 @@ def _figures(s: DatasetStatistics) -> list[str]:
 
 
 def _prompts_and_splits(s: DatasetStatistics) -> list[str]:
+    kinds = [(f"`{k}`", str(v), KIND_MEANINGS.get(k, "")) for k, v in s.prompts_per_kind.items()]
+    kinds.append(("long", str(s.long_prompts), "over several flights, one after the other"))
     splits = [(f"`{k}`", str(v), SPLIT_MEANINGS.get(k, "")) for k, v in s.episodes_per_split.items()]
     return [
         "### Prompts and splits",
-        markdown_table(
-            ("kind of prompt", "prompts"), _counts({**s.prompts_per_kind, "over several flights": s.long_prompts})
-        ),
+        markdown_table(("kind of prompt", "prompts", "how it says where to"), kinds),
         markdown_table(("split", "flights", "meaning"), splits),
         "Splits follow from hashes of the scene's kind, its key and the task set: adding scenes moves nothing. "
         f"{s.held_out_prompts} instructions of training flights are held out too (instruction-unseen).",

@@ -6,7 +6,7 @@ from html import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.dataset.card import SPLIT_MEANINGS
+from flymirage_core.dataset.card import KIND_MEANINGS, SPLIT_MEANINGS
 from flymirage_core.dataset.gallery.svg_charts import bars, paired_columns
 from flymirage_core.dataset.statistics import (
     PAPER_LENGTH_SHARES,
@@ -32,7 +32,7 @@ h2{font-size:19px;margin:36px 0 12px}
 a{color:var(--a)}p.lead{color:var(--soft);margin:0 0 20px}.row{display:flex;flex-wrap:wrap;gap:18px}
 .number{border:1px solid var(--line);border-radius:8px;padding:10px 16px;min-width:120px}
 .number b{display:block;font-size:24px}.number span,.soft{color:var(--soft);font-size:13px}
-figure{margin:0;border:1px solid var(--line);border-radius:8px;padding:12px 14px}
+figure{margin:0;align-self:flex-start;border:1px solid var(--line);border-radius:8px;padding:12px 14px}
 figcaption{font-weight:600;margin-bottom:8px}svg{max-width:100%;height:auto;display:block}
 svg text{fill:var(--ink);font-size:12px}svg .n{fill:var(--soft)}svg .s{font-size:10px}
 svg rect,svg rect.ours{fill:var(--a)}svg rect.theirs{fill:var(--b)}
@@ -51,7 +51,7 @@ def front_page(shares: tuple[SceneShare, ...], thumbnails: dict[str, NDArray[np.
         (f"{s.episodes}", "flights kept"),
         (f"{s.flights - s.episodes}", "flown and left out"),
         (f"{s.prompts}", "instructions"),
-        (f"{s.scenes}", "scenes"),
+        (f"{s.scenes}", "scene" if s.scenes == 1 else "scenes"),
         (f"{s.frames}", "frames with depth and pose"),
         (f"{s.mean_length:.2f} m", f"mean flight (paper {PAPER_MEAN_LENGTH} m)"),
         (f"${s.usd:.2f}", "paid for services"),
@@ -90,7 +90,9 @@ def flight_card(
 ) -> str:
     """A flight's video, its instructions, and what was measured."""
     r = flight.report
-    said = "".join(f"<li>{escape(p.text)} <span class='soft'>{escape(p.kind)}</span></li>" for p in prompts)
+    said = "".join(
+        f"<li>{escape(p.text)} <span class='soft'>{escape(KIND_MEANINGS[p.kind])}</span></li>" for p in prompts
+    )
     kept = verdict is not None and verdict.keep
     why = "" if kept or verdict is None else f"<p>left out: {escape('; '.join(verdict.reasons))}</p>"
     place = f"set {flight.set_index}, leg {flight.leg_index}"
@@ -117,11 +119,17 @@ def _charts(s: DatasetStatistics) -> str:
         paired_columns("Flown length, metres (per cent of flights)", ours, paper, ("here", "published data set")),
         bars("Kinds of places (scenes)", s.scenes_per_category),
         bars("Commonest labels (boxes)", dict(list(s.commonest_labels.items())[:12])),
-        bars("Kinds of instruction", s.prompts_per_kind),
+        bars("How instructions say where to", {KIND_MEANINGS[k]: n for k, n in s.prompts_per_kind.items()}),
         bars("Splits (flights)", s.episodes_per_split),
-        bars("Left out: gate that failed (flights)", s.dropped_by_gate or {"none": 0}),
+        bars("Left out, and why (flights)", _reasons(s) or {"none": 0}),
     ]
     return "".join(charts)
+
+
+def _reasons(s: DatasetStatistics) -> dict[str, int]:
+    """Gates that failed, by their names in plain letters; and flights of which nothing sure could be said."""
+    gates = {gate.replace("_", " "): count for gate, count in s.dropped_by_gate.items()}
+    return gates | ({"no sure instruction": s.kept_without_prompts} if s.kept_without_prompts else {})
 
 
 def _terms(shares: tuple[SceneShare, ...]) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from html import escape
 
-WIDTH, ROW, LABEL, VALUE = 460, 22, 170, 56
+WIDTH, ROW, LABEL, VALUE = 480, 22, 210, 56
 """Pixels: of the chart, a bar's row, the names at its left, the numbers at its right."""
 COLUMN_WIDTH, COLUMN_HEIGHT = 52, 150
 """Pixels: of a column and its gap, of the tallest column."""
@@ -59,5 +59,5 @@ def _figure(title: str, width: int, height: int, body: str) -> str:
     )
 
 
-def _short(name: str, most: int = 26) -> str:
+def _short(name: str, most: int = 34) -> str:
     return name if len(name) <= most else name[: most - 1] + "…"
