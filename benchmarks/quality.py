@@ -1,11 +1,12 @@
 """The verdict's gates on labelled damage: thresholds from one half of the scenes, rates and ROC on the other.
 
-    python benchmarks/quality.py STORE... [--flights 4] [--seed 0] [--table FILE] [--sheet FOLDER]
+    python benchmarks/quality.py HOME... [--flights 4] [--seed 0] [--table FILE] [--sheet FOLDER]
 
-Each STORE holds finished scenes (`flymirage grow`, `flymirage import`). Good flights are damaged in each of the ways of
-`quality_damage.py`. ``--seed`` says which half of the scenes sets the thresholds, by one rule for all gates
-(`suggested`); on the other half stand, for each damage, the area under the ROC curve of its gate and of the verdict,
-and how many are found and wrongly kept, with those thresholds and with the settings'. Then the same over 20 splits.
+Each HOME is a project's folder with finished scenes (`flymirage grow`, `flymirage import`), or a store. Good flights
+are damaged in each of the ways of `quality_damage.py`. ``--seed`` says which half of the scenes sets the thresholds, by
+one rule for all gates (`suggested`); on the other half stand, for each damage, the area under the ROC curve of its gate
+and of the verdict, and how many are found and wrongly kept, with those thresholds and with the settings'. Then the same
+over 20 splits.
 """
 
 import argparse
@@ -13,7 +14,7 @@ import json
 import sys
 import time
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -55,7 +56,7 @@ Thresholds = dict[str, float]
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("stores", type=Path, nargs="+")
+    parser.add_argument("homes", type=Path, nargs="+")
     parser.add_argument("--flights", type=int, default=4)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--sheet", type=Path)
@@ -68,29 +69,29 @@ def main() -> None:
     options = parser.parse_args()
     rows = [json.loads(line) for line in options.table.read_text().splitlines()] if options.table.exists() else []
     done = {row["scene"] for row in rows}
-    for store in options.stores:
+    for home in options.homes:
+        store = home / ".flymirage" / "store" if (home / ".flymirage").exists() else home
         for scene in sorted(path.name for path in (store / "products" / "quality_verdict").iterdir()):
-            if f"{store.parent.name}/{scene}" in done:
+            if f"{home.name}/{scene}" in done:
                 continue
-            fresh = list(measured(store, scene, options.flights, options.sheet))
+            fresh = [row | {"scene": f"{home.name}/{scene}"} for row in measured(store, scene, options)]
             rows += fresh
             with options.table.open("a") as table:
                 table.writelines(json.dumps(row) + "\n" for row in fresh)
     report(rows, options.seed)
 
 
-def measured(store: Path, scene: str, flights: int, sheet: Path | None) -> Iterator[Row]:
+def measured(store: Path, scene: str, options: argparse.Namespace) -> Iterator[Row]:
     """Every gate's value on good flights and on each damage of them."""
     begun = time.process_time()
-    for case, flight_id in cases(store, scene, flights):
+    for case, flight_id in cases(store, scene, options.flights):
         for damage in ("none", *DAMAGES):
             generator = rng(scene, f"damage {damage}", flight_id)
             evidence = case.evidence if damage == "none" else DAMAGES[damage](case, generator)
             results = JUDGE.gates(evidence)
-            if sheet:
-                _picture(sheet / f"{scene}-{flight_id}-{damage}.jpg", evidence)
+            if options.sheet:
+                _picture(options.sheet / f"{scene}-{flight_id}-{damage}.jpg", evidence)
             yield {
-                "scene": f"{store.parent.name}/{scene}",
                 "flight": flight_id,
                 "damage": damage,
                 "values": {g.gate: in_a_closed_scene(g) for g in results},
@@ -143,13 +144,13 @@ def report(rows: list[Row], seed: int) -> None:
             print(f"{gate:15s} {low:9.3f} .. {high:9.3f}  {thresholds}   {damage}: {a:.3f} .. {b:.3f}")
     for name, thresholds in (("calibrated", found), ("settings'", set_here)):
         print(f"\nother half, {name} thresholds\ndamage          gate AUC   finds  verdict AUC  false keep")
-        usual = calm_values(good)
+        scale = Scale.of(first)
         for damage in GATES:
             hurt = of_damage(second, damage)
             best, finds = gate_figures(clean, hurt, damage, thresholds)
-            area, kept = verdict_figures(clean, hurt, usual, thresholds)
+            area, kept = verdict_figures(clean, hurt, scale, thresholds)
             print(f"{damage:15s} {best:8.3f}  {finds:6.1%}  {area:11.3f}  {kept:10.1%}")
-        area, kept = verdict_figures(clean, [r for r in second if r["damage"] != "none"], usual, thresholds)
+        area, kept = verdict_figures(clean, [r for r in second if r["damage"] != "none"], scale, thresholds)
         dropped = {f"{r['scene']}/{r['flight']}": failed(r, thresholds) for r in clean if failed(r, thresholds)}
         print(f"in all: AUC {area:.3f}, false keep {kept:.1%}, false drop {len(dropped) / len(clean):.1%} {dropped}")
     many_splits(rows)
@@ -160,13 +161,13 @@ def many_splits(rows: list[Row]) -> None:
     table: dict[str, list[float]] = {}
     for seed in range(SPLITS):
         first, second = halves(rows, seed)
-        clean, usual, thresholds = of_damage(second, "none"), calm_values(of_damage(first, "none")), calibrated(first)
+        clean, scale, thresholds = of_damage(second, "none"), Scale.of(first), calibrated(first)
         table.setdefault("false drop", []).append(float(np.mean([bool(failed(r, thresholds)) for r in clean])))
         for damage in (*GATES, "all"):
             hurt = [r for r in second if r["damage"] == damage or (damage == "all" and r["damage"] != "none")]
             if damage != "all":
                 table.setdefault(f"{damage}: gate AUC", []).append(gate_figures(clean, hurt, damage, thresholds)[0])
-            area, kept = verdict_figures(clean, hurt, usual, thresholds)
+            area, kept = verdict_figures(clean, hurt, scale, thresholds)
             table.setdefault(f"{damage}: verdict AUC", []).append(area)
             table.setdefault(f"{damage}: false keep", []).append(kept)
     print(f"\nover {SPLITS} splits, thresholds always from the other half: mean (least .. most)")
@@ -219,25 +220,19 @@ def gate_figures(clean: list[Row], hurt: list[Row], damage: str, thresholds: Thr
     return area, float(np.mean([bool(set(gates) & set(failed(r, thresholds))) for r in hurt]))
 
 
-def verdict_figures(
-    clean: list[Row], hurt: list[Row], usual: dict[str, float], thresholds: Thresholds
-) -> tuple[float, float]:
+def verdict_figures(clean: list[Row], hurt: list[Row], scale: "Scale", thresholds: Thresholds) -> tuple[float, float]:
     """The verdict's area under the curve, and the share of damaged flights that it keeps."""
-    area = auc(*([score(r, usual, thresholds) for r in rows] for rows in (clean, hurt)))
+    area = auc(*([scale.score(r, thresholds) for r in rows] for rows in (clean, hurt)))
     return area, float(np.mean([not failed(r, thresholds) for r in hurt]))
 
 
 def failed(row: Row, thresholds: Thresholds) -> list[str]:
     """Gates that the flight fails."""
-    return [g for g, v in row["values"].items() if excess(g, v, thresholds[g], thresholds[g]) > 0]
+    return [g for g, v in row["values"].items() if beyond(g, v, thresholds[g]) > 0]
 
 
 def values(rows: list[Row], gate: str) -> np.ndarray:
     return np.array([r["values"][gate] for r in rows], float)
-
-
-def calm_values(good: list[Row]) -> dict[str, float]:
-    return {gate: float(np.median(values(good, gate))) for gate in good[0]["values"]}
 
 
 def badness(rows: list[Row], gate: str) -> np.ndarray:
@@ -245,17 +240,39 @@ def badness(rows: list[Row], gate: str) -> np.ndarray:
     return -values(rows, gate) if gate in LOW_IS_BAD else values(rows, gate)
 
 
-def score(row: Row, usual: dict[str, float], thresholds: Thresholds) -> float:
-    """A verdict as one number: how far its worst gate lies beyond the threshold; -1 at good flights' median."""
-    return max(excess(gate, value, thresholds[gate], usual[gate]) for gate, value in row["values"].items())
+@dataclass(frozen=True)
+class Scale:
+    """Makes one number of a verdict: of each gate, -1 is the median of good flights, 0 the threshold, and 1 the median
+    of the damage that the gate is there for; the worst gate counts."""
+
+    good: dict[str, float]
+    hurt: dict[str, float]  # of gates that are there for a damage
+
+    @staticmethod
+    def of(rows: list[Row]) -> "Scale":
+        clean = of_damage(rows, "none")
+        good = {gate: float(np.median(values(clean, gate))) for gate in clean[0]["values"]}
+        hurt = {
+            gate: float(np.median(values(of_damage(rows, damage), gate)))
+            for damage, gates in GATES.items()
+            for gate in gates
+        }
+        return Scale(good, hurt)
+
+    def score(self, row: Row, thresholds: Thresholds) -> float:
+        return max(self._of_gate(gate, value, thresholds[gate]) for gate, value in row["values"].items())
+
+    def _of_gate(self, gate: str, value: float, threshold: float) -> float:
+        over = beyond(gate, value, threshold)
+        calm = -beyond(gate, self.good[gate], threshold)
+        far = max(beyond(gate, self.hurt.get(gate, self.good[gate]), threshold), calm)
+        return over / max(far if over > 0 else calm, 1e-9)
 
 
-def excess(gate: str, value: float, threshold: float, calm: float) -> float:
-    """How far a gate's value lies beyond its threshold, in distances of ``calm``, the usual value, from it."""
-    if not np.isfinite(value):
-        return float("inf")
+def beyond(gate: str, value: float, threshold: float) -> float:
+    """How far a value lies on the bad side of a threshold, in the gate's own units."""
     sign = -1.0 if gate in LOW_IS_BAD else 1.0
-    return sign * (value - threshold) / max(sign * (threshold - calm), 1e-9)
+    return float("inf") if not np.isfinite(value) else sign * (value - threshold)
 
 
 def auc(good: "np.ndarray | list[float]", hurt: "np.ndarray | list[float]") -> float:
