@@ -123,6 +123,11 @@ def solid_faces(mesh: TexturedMesh) -> RayCaster:
     return RayCaster(mesh.vertices[mesh.faces[solid]])
 
 
+def opaque_faces(mesh: TexturedMesh) -> RayCaster:
+    """What hides what is behind it: all faces but panes of glass."""
+    return RayCaster(mesh.vertices[mesh.faces[mesh.opacity(np.arange(len(mesh.faces))) > 0.5]])
+
+
 def bake(
     surfels: Surfels,
     lamp_surfels: NDArray[np.bool_],

@@ -46,6 +46,12 @@ class TexturedMesh:
         """(N,) opacity of ``faces`` (N,): less than 1 for glass."""
         return np.array([m.opacity for m in self.materials])[self.face_part[faces]]
 
+    def areas(self) -> Float:
+        """(M,) square metres of each part."""
+        a, b, c = self.vertices[self.faces].swapaxes(0, 1)
+        size = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2  # (F,)
+        return np.asarray(np.bincount(self.face_part, size, len(self.materials)), np.float64)
+
     def trimesh(self) -> trimesh.Trimesh:
         """With sRGB face colours: each triangle's albedo at its middle."""
         faces = np.arange(len(self.faces))

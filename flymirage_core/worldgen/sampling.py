@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from flymirage_core.splats.cloud import GaussianCloud
 from flymirage_core.worldgen.assembly import Assembly
 from flymirage_core.worldgen.backdrop import BEYOND
-from flymirage_core.worldgen.lighting import BakedLight, bake, solid_faces
+from flymirage_core.worldgen.lighting import BakedLight, bake, opaque_faces, solid_faces
 from flymirage_core.worldgen.meshes import TexturedMesh, textured_mesh
 from flymirage_core.worldgen.place import Place
 from flymirage_core.worldgen.rays import RayCaster
@@ -20,7 +20,7 @@ from flymirage_core.worldgen.windows import illumination_of
 
 Float = NDArray[np.float64]
 
-OVERLAP: Final = 0.58
+OVERLAP: Final = 0.55
 """A splat's standard deviation as a share of its surfel's side: the least that leaves no pinholes at corners."""
 THICKNESS: Final = 0.002
 """Standard deviation along the normal, metres."""
@@ -56,17 +56,17 @@ class LitWorld:
 def lit_world(assembly: Assembly, count: int) -> LitWorld:
     """About ``count`` Gaussians of the assembled world, world frame."""
     mesh = textured_mesh(assembly.parts)
-    solid = solid_faces(mesh)
+    opaque = opaque_faces(mesh)
     factors = coarseness(assembly, mesh)
     spacing = spacing_for(assembly, mesh, factors, count)
-    pieces, leaf = _cut(assembly, factors, spacing, solid)
+    pieces, leaf = _cut(assembly, factors, spacing, opaque)
     share = sum(map(len, pieces)) / count
     if abs(share - 1) > TOLERANCE:  # places of many small curved things have more surfels than their areas say
-        pieces, leaf = _cut(assembly, factors, spacing * share**RESPONSE, solid)
+        pieces, leaf = _cut(assembly, factors, spacing * share**RESPONSE, opaque)
     illumination, lamps = illumination_of(assembly, pieces)
     surfels = Surfels.joined(pieces)
     is_lamp = np.repeat(np.array(lamps, bool), [len(p) for p in pieces])
-    light = bake(surfels, is_lamp, mesh, solid, illumination)
+    light = bake(surfels, is_lamp, mesh, solid_faces(mesh), illumination)
     glow = surfels.emission[:, None] * light_unit(light)
     radiance = surfels.albedo * (light.through(surfels.points, surfels.normals, leaf) / np.pi + glow)
     cloud = _joined(
@@ -79,14 +79,14 @@ def lit_world(assembly: Assembly, count: int) -> LitWorld:
 
 
 def _cut(
-    assembly: Assembly, factors: Float, spacing: float, solid: RayCaster
+    assembly: Assembly, factors: Float, spacing: float, opaque: RayCaster
 ) -> tuple[list[Surfels], NDArray[np.bool_]]:
     """The surfels of each thing that can be seen, and (N,) which of them all are leaves."""
     parts = assembly.parts
     cut = [surfels_of(p, spacing * float(f)) for p, f in zip(parts, factors, strict=True)]
     surfels = Surfels.joined(cut)
     leaf = np.repeat([isinstance(p.surface, Leaves) for p in parts], [len(c) for c in cut])
-    seen = _seen(surfels, leaf, solid, assembly.place)
+    seen = _seen(surfels, leaf, opaque, assembly.place)
     thing = np.repeat(np.arange(len(assembly.things)), [len(t.parts) for t in assembly.things])
     ends = np.cumsum(np.bincount(np.repeat(thing, [len(c) for c in cut])[seen], minlength=len(assembly.things)))
     kept = surfels[seen]
@@ -173,9 +173,9 @@ def _joined(one: GaussianCloud, other: GaussianCloud) -> GaussianCloud:
     return GaussianCloud(*(np.concatenate([getattr(one, name), getattr(other, name)]) for name in names))
 
 
-def _seen(surfels: Surfels, leaf: NDArray[np.bool_], solid: RayCaster, place: Place) -> NDArray[np.bool_]:
+def _seen(surfels: Surfels, leaf: NDArray[np.bool_], opaque: RayCaster, place: Place) -> NDArray[np.bool_]:
     """(N,) surfels that a camera in the place could see. Leaves cover each other and are seen from both sides."""
-    return (leaf | ~_covered(surfels, solid)) & ~_outward(surfels, place)
+    return (leaf | (surfels.emission > 0) | ~_covered(surfels, opaque)) & ~_outward(surfels, place)
 
 
 def _outward(surfels: Surfels, place: Place) -> NDArray[np.bool_]:
@@ -190,9 +190,9 @@ def _outward(surfels: Surfels, place: Place) -> NDArray[np.bool_]:
     return np.asarray(inside & ~still)
 
 
-def _covered(surfels: Surfels, solid: RayCaster) -> NDArray[np.bool_]:
+def _covered(surfels: Surfels, opaque: RayCaster) -> NDArray[np.bool_]:
     """(N,) surfels that something lies right before of: they would only shine through at a slant.
 
     Undersides of what stands, backs of what hangs, walls behind skirting, floors under rugs.
     """
-    return solid.occluded(surfels.points + 1e-3 * surfels.normals, surfels.normals, np.full(len(surfels), COVER))
+    return opaque.occluded(surfels.points + 1e-3 * surfels.normals, surfels.normals, np.full(len(surfels), COVER))

@@ -1,4 +1,4 @@
-"""How finely each part of a world is cut: small things finer, far ones coarser, and all so that the count comes out."""
+"""How finely each part of a world is cut: small things and what drones see finer, so that the count comes out."""
 
 from typing import Final
 
@@ -8,20 +8,17 @@ from numpy.typing import NDArray
 from flymirage_core.worldgen.assembly import Assembly
 from flymirage_core.worldgen.meshes import TexturedMesh
 from flymirage_core.worldgen.surfaces import EDGE_CELLS, FINE_JOINTS, Leaves
+from flymirage_core.worldgen.visibility import pixels_per_area
 
 Float = NDArray[np.float64]
 
 SMALL: Final = 1.1
 """Metres; things smaller than this are cut finer, down to `FINEST` of the spacing."""
 FINEST: Final = 0.45
-FLOWN: Final = np.array([13.0, 13.0, 3.2])
-"""Metres from c: drones rarely fly further; what lies beyond is cut coarser, by `COARSER` for each metre."""
-COARSER: Final = 0.11
-COARSEST: Final = 6.0
-HIGH_LOW: Final = (4.0, -1.0)
-"""Metres: what lies wholly above or below is far as well."""
-RING: Final = 200
-"""Surfaces of more points than this may be rings round everything: their nearest point counts, not their bounds."""
+LOOKED_AT: Final = 1 / 3
+"""Root of how much of what drones see a part is, by which its spacing falls: at edges, error grows with the spacing."""
+LOOKED_AT_RANGE: Final = (0.5, 5.0)
+"""Factors on the spacing between which that holds."""
 SEEN: Final = 0.8
 """Share of all surfels that can be seen, as it usually is."""
 RANGE: Final = (0.004, 1.0)
@@ -31,29 +28,11 @@ HALVINGS: Final = 24
 
 def coarseness(assembly: Assembly, mesh: TexturedMesh) -> Float:
     """(M,) factor on the spacing of each part."""
-    count = len(assembly.parts)
-    part = np.zeros(len(mesh.vertices), np.int64)
-    part[mesh.faces.ravel()] = np.repeat(mesh.face_part, 3)
-    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
-    np.minimum.at(low, part, mesh.vertices)
-    np.maximum.at(high, part, mesh.vertices)
-    centre = np.array(assembly.truth.centre)
-    far = _outside(low, high, centre)
-    nearest = np.full(count, np.inf)
-    np.minimum.at(nearest, part, _outside(mesh.vertices, mesh.vertices, centre))
-    ring = np.bincount(part, minlength=count) > RING
-    factor = np.minimum(1 + COARSER * np.where(ring, nearest, far), COARSEST)
+    seen = np.clip(pixels_per_area(assembly, mesh) ** -LOOKED_AT, *LOOKED_AT_RANGE)
     owner = np.repeat([t.object_id for t in assembly.things], [len(t.parts) for t in assembly.things])
     sizes = np.array([max(o.size) for o in assembly.truth.objects] or [1.0])
     fine = np.clip(np.sqrt(sizes[np.maximum(owner, 0)] / SMALL), FINEST, 1.0)
-    return np.asarray(factor * np.where(owner >= 0, fine, 1.0))
-
-
-def _outside(low: Float, high: Float, centre: Float) -> Float:
-    """(N,) metres from boxes to the region that is flown in."""
-    off = np.maximum(np.maximum(low - centre - FLOWN, centre - FLOWN - high), 0.0)
-    off[:, 2] = np.maximum(np.maximum(low[:, 2] - HIGH_LOW[0], HIGH_LOW[1] - high[:, 2]), 0.0)
-    return np.asarray(np.linalg.norm(off, axis=1))
+    return np.asarray(seen * np.where(owner >= 0, fine, 1.0))
 
 
 def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: int) -> float:
@@ -68,7 +47,7 @@ def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: i
     rows = np.unique(np.column_stack([mesh.face_part, mesh.extent[first]])[solid[mesh.face_part]], axis=0)
     part, extent = rows[:, 0].astype(int), rows[:, 1:]  # the patches of all parts: (K,), (K, 2)
     listed = np.bincount(part, extent.prod(axis=1), len(parts))
-    repeats = np.maximum(np.rint(_areas(mesh, len(parts)) / np.maximum(listed, 1e-9)), 1)[part]  # a block's sides
+    repeats = np.maximum(np.rint(mesh.areas() / np.maximum(listed, 1e-9)), 1)[part]  # a block's sides
     low, high = RANGE
     for _ in range(HALVINGS):
         spacing = np.sqrt(low * high)
@@ -80,13 +59,6 @@ def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: i
         else:
             high = spacing
     return float(high)
-
-
-def _areas(mesh: TexturedMesh, count: int) -> Float:
-    """(M,) square metres of each part."""
-    a, b, c = mesh.vertices[mesh.faces].swapaxes(0, 1)
-    size = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2  # (F,)
-    return np.asarray(np.bincount(mesh.face_part, size, count), np.float64)
 
 
 def _cells(length: Float, spacing: Float, pitch: Float) -> Float:

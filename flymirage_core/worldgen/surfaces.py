@@ -11,7 +11,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from flymirage_core.worldgen.materials import Material, albedo
+from flymirage_core.worldgen.halving import textured_cells
+from flymirage_core.worldgen.materials import Material
 
 Float = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -20,11 +21,12 @@ EDGE_CELLS = (0.25, 0.5)
 """Widths of a patch's outermost cells as shares of the spacing: narrow, so that silhouettes are crisp."""
 FINE_JOINTS = 1.8
 """Joints are cut where they are this many spacings apart."""
-QUARTERS = ((-0.25, -0.25), (-0.25, 0.25), (0.25, -0.25), (0.25, 0.25))
 CORNER = 0.6
 """Radians: where a patch turns more from one grid line to the next, it has an edge."""
 MAX_TURN = 0.8
 """Radians that one surfel may span on a curved surface."""
+LEAF_LENGTHS, LEAF_WIDTHS = (0.8, 0.65), (1.1, 0.7)
+"""Of a leaf's two surfels, in half lengths and half widths: together their splats cover about what the leaf does."""
 FEWER_LEAVES = 0.35
 """Leaves smaller than this share of the spacing are drawn together into fewer, larger ones."""
 
@@ -160,20 +162,24 @@ def cells(length: float, spacing: float, pitch: float = 0.0, joint: float = 0.0)
 
 
 def _dressed(
-    points: Float, along: Float, across: Float, material: Material, uv: Float, extent: tuple[float, float]
+    points: Float,
+    along: Float,
+    across: Float,
+    material: Material,
+    uv: Float,
+    extent: tuple[float, float],
+    spacing: float,
 ) -> Surfels:
-    """Give surfels their normals and colours: each the mean of its four quarters, so that no texture is finer than it.
+    """Give surfels their normals and colours, and halve them where the texture asks for it (`textured_cells`).
 
     ``uv`` (N, 2) is the middle; u runs with ``along``.
     """
+    cells, colours = textured_cells(np.concatenate([points, along, across, uv], axis=1), material, extent, spacing)
+    points, along, across = cells[:, :3], cells[:, 3:6], cells[:, 6:9]
     normals = np.cross(along, across)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    lengths = np.stack([np.linalg.norm(along, axis=1), np.linalg.norm(across, axis=1)], 1)  # (N, 2)
-    colours = np.zeros((len(points), 3))
-    for a, b in QUARTERS:
-        colours += albedo(material, uv + lengths * (a, b), extent, points + a * along + b * across)
     ones = np.ones(len(points))
-    return Surfels(points, along, across, normals, colours / 4, material.emission * ones, material.opacity * ones)
+    return Surfels(points, along, across, normals, colours, material.emission * ones, material.opacity * ones)
 
 
 def _spacings(material: Material, spacing: float) -> tuple[float, float]:
@@ -193,8 +199,8 @@ def _sheet(sheet: Sheet, material: Material, spacing: float) -> Surfels:
     points = np.asarray(sheet.corner) + uu[:, None] * a + vv[:, None] * b
     along, across = np.repeat(wu, len(v))[:, None] * a, np.tile(wv, len(u))[:, None] * b
     if lengthwise:  # the grain runs along the longer side
-        return _dressed(points, across, -along, material, np.stack([vv, uu], 1), extent[::-1])
-    return _dressed(points, along, across, material, np.stack([uu, vv], 1), extent)
+        return _dressed(points, across, -along, material, np.stack([vv, uu], 1), extent[::-1], spacing)
+    return _dressed(points, along, across, material, np.stack([uu, vv], 1), extent, spacing)
 
 
 def _block(block: Block, material: Material, spacing: float) -> list[Surfels]:
@@ -269,18 +275,18 @@ def _patch(patch: Patch, material: Material, spacing: float) -> list[Surfels]:
             np.interp(_bound(j, counts[row], smooth_ring) * reach[-1], reach, np.arange(a, b + 1)) for j in (k, k + 1)
         )
         if len(row):
-            pieces.append(_patch_surfels(grid, rows[row], left, right, material))
+            pieces.append(_patch_surfels(grid, rows[row], left, right, material, spacing))
     return pieces
 
 
-def _patch_surfels(grid: Float, rows: Float, left: Float, right: Float, material: Material) -> Surfels:
+def _patch_surfels(grid: Float, rows: Float, left: Float, right: Float, material: Material, spacing: float) -> Surfels:
     """One surfel for each cell between two row positions (N, 2) and two column positions (N,)."""
     top, bottom, r, q = rows[:, 0], rows[:, 1], rows.mean(axis=1), (left + right) / 2
     centre = _at(grid, r, q)
     along = (_at(grid, bottom, q) - _at(grid, top, q))[:, :3]
     across = (_at(grid, r, right) - _at(grid, r, left))[:, :3]
     extent = (float(grid[..., 3].max()), float(grid[..., 4].max()))
-    return _dressed(centre[:, :3], along, across, material, centre[:, 3:], extent)
+    return _dressed(centre[:, :3], along, across, material, centre[:, 3:], extent, spacing)
 
 
 def patch_uv(grid: Float) -> Float:
@@ -354,9 +360,9 @@ def _leaves(leaves: Leaves, material: Material, spacing: float) -> Surfels:
     outward = outward / np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-9) + [0.0, 0.0, 0.8]
     facing = np.where((np.cross(lengths, widths) * outward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
     points = np.concatenate([centres - 0.35 * lengths, centres + 0.4 * lengths])
-    along = np.concatenate([lengths * 1.1, lengths * 0.9])
-    across = np.concatenate([widths * 1.5 * facing, widths * 1.0 * facing])
-    return _dressed(points, along, across, material, np.zeros((len(points), 2)), (1.0, 1.0))
+    along = np.concatenate([lengths * share for share in LEAF_LENGTHS])
+    across = np.concatenate([widths * share * facing for share in LEAF_WIDTHS])
+    return _dressed(points, along, across, material, np.zeros((len(points), 2)), (1.0, 1.0), np.inf)
 
 
 def upright(yaw: float) -> Float:
