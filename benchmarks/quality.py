@@ -103,9 +103,9 @@ def measured(store: Path, scene: str, options: argparse.Namespace) -> Iterator[R
 def in_a_closed_scene(result: GateResult) -> float:
     """The value that in a scene without openings of its own lies as far beyond the threshold."""
     if result.gate == "hole":
-        return result.value * JUDGE.settings.max_hole[0] / result.threshold
+        return max(0.0, result.value - (result.threshold - JUDGE.settings.max_hole[0]))
     if result.gate == "alpha_coverage":
-        return 1 - (1 - result.value) * JUDGE.settings.max_empty[0] / (1 - result.threshold)
+        return min(1.0, result.value + (1 - result.threshold - JUDGE.settings.max_empty[0]))
     return result.value
 
 

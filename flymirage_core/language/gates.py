@@ -31,8 +31,6 @@ LEAST_VISIBLE_PROBES = 3
 """Of nine: a frame sees the target when the centre, or this many probes, are in the picture and not hidden."""
 CLEARANCE_SLACK = 0.17
 """Metres: the diagonal of the occupancy's voxels, by which a clearance may be too large."""
-OPENINGS_FACTOR = 2.0
-"""A flight may look into the scene's own openings from nearer than the median flight does."""
 STILL = (0.05, 0.05)
 """m/s and rad/s below which the drone does nothing."""
 
@@ -55,8 +53,8 @@ def hole_gate(sightings: Sequence[Sighting], openings: float, settings: VerdictS
 
 
 def empty_share(openings: float, limits: tuple[float, float]) -> float:
-    """What may be empty in a scene with ``openings``: `OPENINGS_FACTOR` times them, within ``limits``."""
-    return float(np.clip(OPENINGS_FACTOR * openings, *limits))
+    """What may be empty in a scene with ``openings``: they, and as much more as in a closed one, up to the limit."""
+    return min(limits[0] + openings, limits[1])
 
 
 def blur_gate(sightings: Sequence[Sighting], settings: VerdictSettings) -> GateResult:

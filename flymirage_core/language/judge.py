@@ -38,7 +38,7 @@ class MeasuredJudge:
     settings: VerdictSettings
     limits: PlannerSettings = field(default_factory=PlannerSettings)
     """The quadrotor's limits that flights were planned with."""
-    name: str = "measured 3"
+    name: str = "measured 4"
 
     def judge(self, frames: Frames, flights: Trajectories, boxes: BoxMap) -> QualityVerdicts:
         """One verdict for each flight, in their order.

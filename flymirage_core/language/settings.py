@@ -16,8 +16,9 @@ class VerdictSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     max_empty: Limits = (0.08, 0.25)
-    """Most of a frame's pixels with alpha < 0.5, over the flight's worst frame: in a closed scene, and in one with
-    openings of its own (a captured room's door, behind which nothing was captured), which the median flight sees."""
+    """Most of a frame's pixels with alpha < 0.5, over the flight's worst frame: in a closed scene, and at all. A
+    captured room's door, behind which nothing was captured, is the scene's own: what the median flight sees empty is
+    added."""
     max_hole: Limits = (0.04, 0.2)
     """Largest connected part of a sampled frame without a depth return, as a share of its pixels; likewise."""
     max_blur: Positive = 0.46
