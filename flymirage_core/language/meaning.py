@@ -25,7 +25,7 @@ class Shape(Enum):
     KNEE_HIGH = "knee-high"  # of what stands on the ground, as are the next two
     WAIST_HIGH = "waist-high"
     HEAD_HIGH = "head-high"
-    BOXY = "boxy"  # what is in the box need not be, so it is said last
+    BOXY = "boxy"  # read, not written: what is in a box need not be
 
 
 class Size(Enum):

@@ -261,9 +261,9 @@ def _doubt(box: ObjectBox) -> float:
 def _looks(box: ObjectBox) -> list[Term]:
     """What is seen on the box itself, the surest first: colour, shapes, and the material, which is a guess.
 
-    Of a thing with a name only the shapes that it might not have.
+    Of a thing with a name only the shapes that it might not have; of none that it is boxy, which its box always is.
     """
-    shapes = [shape for shape in Shape if shaped(shape, box) is Truth.YES]
+    shapes = [shape for shape in Shape if shape is not Shape.BOXY and shaped(shape, box) is Truth.YES]
     if Shape.SLIM in shapes and Shape.TALL in shapes:
         shapes.remove(Shape.SLIM)
     telling: list[Term] = [Shaped(s) for s in shapes if is_generic(box.label) or s in TELLING_SHAPES]
