@@ -17,8 +17,6 @@ HALVINGS: Final = 5
 SIGNS: Final = ((-1, -1), (-1, 1), (1, -1), (1, 1))
 QUARTER, CORNER = 0.25, 0.45
 """Shares of a cell's edges from its middle: where its colour is taken, and where else it is looked at for changes."""
-DOWN, OVER, CROSSED = (-0.5, -0.5, 0.5, 0.5), (-0.5, 0.5, -0.5, 0.5), (0.5, -0.5, -0.5, 0.5)
-"""Differences between the quarters along u, along v, and of a chequer."""
 
 
 def textured_cells(cells: Float, material: Material, extent: Extent, spacing: float) -> tuple[Float, Float]:
@@ -30,30 +28,36 @@ def textured_cells(cells: Float, material: Material, extent: Extent, spacing: fl
     """
     done, colours = [], []
     for last in [*[False] * HALVINGS, True]:
-        quarters, corners = (_albedo(cells, share, material, extent) for share in (QUARTER, CORNER))
-        gain_u, gain_v = np.maximum(_gains(quarters, cells, spacing), _gains(corners, cells, spacing))
+        colours_at = _albedo(cells, material, extent)
+        gain_u, gain_v = _gains(colours_at, cells, spacing)
         coarse = (np.maximum(gain_u, gain_v) > CONTRAST) & (not last)
         done.append(cells[~coarse])
-        colours.append(quarters[:, ~coarse].mean(axis=0))
+        colours.append(colours_at[0][:, ~coarse].mean(axis=0))
         cells = _halved(cells[coarse], gain_u[coarse] >= gain_v[coarse])
         if len(cells) == 0:
             break
     return np.concatenate(done), np.concatenate(colours)
 
 
-def _albedo(cells: Float, share: float, material: Material, extent: Extent) -> Float:
-    """Albedo (4, N, 3) at a share of the edges from the middle, towards each corner."""
+def _albedo(cells: Float, material: Material, extent: Extent) -> Float:
+    """Albedo (2, 4, N, 3) in the middle of each quarter, and near each corner."""
     middle, u, v, uv = cells[:, :3], cells[:, 3:6], cells[:, 6:9], cells[:, 9:]
-    steps = share * np.stack([np.linalg.norm(u, axis=1), np.linalg.norm(v, axis=1)], 1)  # (N, 2)
-    return np.stack([albedo(material, uv + steps * (a, b), extent, middle + share * (a * u + b * v)) for a, b in SIGNS])
+    lengths = np.stack([np.linalg.norm(u, axis=1), np.linalg.norm(v, axis=1)], 1)  # (N, 2)
+    where = [(share, a, b) for share in (QUARTER, CORNER) for a, b in SIGNS]
+    coordinates = np.concatenate([uv + share * lengths * (a, b) for share, a, b in where])  # (8 N, 2)
+    points = np.concatenate([middle + share * (a * u + b * v) for share, a, b in where])  # (8 N, 3)
+    return albedo(material, coordinates, extent, points).reshape(2, 4, len(cells), 3)
 
 
-def _gains(colours: Float, cells: Float, spacing: float) -> Float:
-    """(2, N) contrast of ``colours`` (4, N, 3) times length of each cell along u, and along v."""
+def _gains(colours: Float, cells: Float, spacing: float) -> tuple[Float, Float]:
+    """(N,) contrast of ``colours`` (2, 4, N, 3) times length of each cell along u, and along v."""
     tone = np.sqrt(colours)  # about as bright as they look
-    down, over, crossed = (np.abs(np.tensordot(signs, tone, 1)).max(axis=1) for signs in (DOWN, OVER, CROSSED))
+    low, left, right, high = tone.swapaxes(0, 1)  # (2, N, 3) each: the signs (-1, -1), (-1, 1), (1, -1), (1, 1)
+    rising, falling = high - low, right - left
+    down, over, crossed = rising + falling, rising - falling, high + low - left - right
+    down, over, crossed = (np.abs(change).max(axis=(0, 2)) / 2 for change in (down, over, crossed))
     u, v = (np.linalg.norm(cells[:, i : i + 3], axis=1) / spacing for i in (3, 6))
-    return np.stack([np.maximum(down, crossed) * u, np.maximum(over, crossed) * v])
+    return np.maximum(down, crossed) * u, np.maximum(over, crossed) * v
 
 
 def _halved(cells: Float, along_u: NDArray[np.bool_]) -> Float:
