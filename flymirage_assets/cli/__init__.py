@@ -1,5 +1,7 @@
 """The command line: one module for each subject, each of which adds its commands to `app`."""
 
+import signal
+
 from rich.console import Console
 from rich.markup import escape
 
@@ -15,6 +17,10 @@ INTERRUPTED = 130
 
 def main() -> None:
     """Run the command line; the project's own errors become one sentence and exit code 1."""
+    if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+        # A script's background job (`flymirage grow &`): the shell ignores SIGINT for it, Dagster has SIGTERM do as
+        # SIGINT does, and nothing but SIGKILL would stop it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         app()
     except (growth.StoppedError, KeyboardInterrupt) as stop:

@@ -1,6 +1,7 @@
 """The machine room: growth that is the same however often it is asked for, failures, automation, housekeeping."""
 
 import errno
+import signal
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, date, datetime
@@ -10,6 +11,7 @@ import dagster as dg
 import pytest
 from projects import Project
 
+from flymirage_assets import cli
 from flymirage_assets.conditions import CASCADE
 from flymirage_assets.failures import one_clear_sentence
 from flymirage_assets.growing import next_scenes, night_scenes, why_stop
@@ -177,3 +179,15 @@ def test_removing_a_scene_leaves_nothing_of_it(tmp_path: Path) -> None:
     with dg.DagsterInstance.from_config(str(tmp_path / ".flymirage" / "dagster")) as instance:
         assert instance.get_dynamic_partitions("scene") == [] and not instance.get_runs()
         assert not instance.get_materialized_partitions(dg.AssetKey("prompts"))
+
+
+def test_a_scripts_background_job_can_be_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The shell ignores SIGINT for it, and Dagster has SIGTERM do as SIGINT does."""
+    heard: list[object] = []
+    monkeypatch.setattr(cli, "app", lambda: heard.append(signal.getsignal(signal.SIGINT)))
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        cli.main()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert heard == [signal.default_int_handler]
