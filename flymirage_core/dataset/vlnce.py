@@ -30,7 +30,9 @@ GOAL_RADIUS = 1.0
 REFERENCE_STEP = 0.25
 """Metres between points of the reference path: VLN-CE's step."""
 PATH_TOLERANCE = 0.05
-"""Metres; where a path turns sharply the flight leaves its straight pieces by 1 to 2 cm."""
+"""Metres by which a flight may leave the straight pieces of its reference path ..."""
+CUT_CORNER = 0.02
+"""... and from which on the path gets a point more there: a flight may turn back on the spot."""
 HELD_OUT_SPLIT = "test_unseen_instruction"
 
 Row = dict[str, Any]
@@ -77,7 +79,7 @@ class VlnceFormat(SceneFolders):
             "vlnce": {
                 "frame": "not Habitat's: right-handed, z up, metres; start_rotation xyzw, body (FLU) to world",
                 "goals": f"position: where the flight ends; radius {GOAL_RADIUS:g} m; object: the target's box centre",
-                "reference_path": f"the flown path, a point every {REFERENCE_STEP:g} m of arc, the last one the end",
+                "reference_path": f"the flown path, a point every {REFERENCE_STEP:g} m of arc, at sharp turns and its end",
                 "locations": "the reference path again, as VLN-CE's ground truth has it",
                 "long_horizon": "several flights of one task set, flown one after the other",
             }
@@ -137,17 +139,20 @@ def _check_path(row: Row, products: SceneProducts, where: str) -> None:
 
 def _distance_to_path(points: Points, path: Points) -> NDArray[np.float64]:
     """Metres (N,) from each point (N, 3) to the nearest of the straight pieces between a path's points (P, 3)."""
-    if len(path) < 2:
-        return np.asarray(np.linalg.norm(points - path[0], axis=1))
-    start, along = path[:-1], np.diff(path, axis=0)  # (P - 1, 3)
-    offset = points[:, None] - start  # (N, P - 1, 3)
+    ends = path[1:] if len(path) > 1 else path
+    return np.asarray(_distance_to_pieces(points[:, None], path[: len(ends)], ends).min(axis=1))
+
+
+def _distance_to_pieces(points: Points, start: Points, end: Points) -> NDArray[np.float64]:
+    """Metres (...) from points (..., 3) to the straight pieces from ``start`` to ``end``."""
+    along, offset = end - start, points - start
     share = np.clip((offset * along).sum(axis=-1) / np.maximum((along**2).sum(axis=-1), 1e-12), 0.0, 1.0)
-    return np.asarray(np.linalg.norm(offset - share[..., None] * along, axis=-1).min(axis=1))
+    return np.asarray(np.linalg.norm(offset - share[..., None] * along, axis=-1))
 
 
 def _row(products: SceneProducts, legs: list[Episode], text: str, kind: str) -> Row:
     flights = [flight_of(products, leg.flight_id) for leg in legs]
-    path = _resampled(np.concatenate([flight.positions for flight in flights]))
+    path = resampled(np.concatenate([flight.positions for flight in flights]))
     length = sum(float(leg.report.length) for leg in legs)
     goals = [
         {
@@ -172,13 +177,19 @@ def _row(products: SceneProducts, legs: list[Episode], text: str, kind: str) -> 
     }
 
 
-def _resampled(positions: Any) -> list[list[float]]:
-    """Points every `REFERENCE_STEP` along a path (T, 3), its end included."""
+def resampled(positions: Points) -> list[list[float]]:
+    """Points every `REFERENCE_STEP` along a path (T, 3), its end included, and where it would cut a corner."""
     steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
-    arc = np.concatenate([[0.0], np.cumsum(steps)])
+    arc = np.concatenate([[0.0], np.cumsum(steps)])  # (T,)
     wanted = np.append(np.arange(0.0, arc[-1], REFERENCE_STEP), arc[-1])
-    points = np.column_stack([np.interp(wanted, arc, axis) for axis in positions.T])
-    return [[round(float(v), 4) for v in point] for point in points]
+    while True:
+        points = np.column_stack([np.interp(wanted, arc, axis) for axis in positions.T])  # (P, 3)
+        piece = np.clip(np.searchsorted(wanted, arc, side="right") - 1, 0, max(len(points) - 2, 0))  # (T,)
+        off = _distance_to_pieces(positions, points[piece], points[np.minimum(piece + 1, len(points) - 1)])
+        worst = int(np.argmax(off))
+        if off[worst] <= CUT_CORNER or arc[worst] in wanted:
+            return [[round(float(v), 4) for v in point] for point in points]
+        wanted = np.sort(np.append(wanted, arc[worst]))
 
 
 def _truth(row: Row) -> Row:

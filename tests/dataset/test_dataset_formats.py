@@ -19,7 +19,7 @@ from flymirage_core.dataset.formats import FORMATS
 from flymirage_core.dataset.lerobot import DepthExport
 from flymirage_core.dataset.scene_products import SceneProducts
 from flymirage_core.dataset.tfrecord import example_bytes, example_from, read_records, write_records
-from flymirage_core.dataset.vlnce import VlnceFormat
+from flymirage_core.dataset.vlnce import REFERENCE_STEP, VlnceFormat, resampled
 from flymirage_core.errors import InputError, ProductError
 
 OTHERS = [name for name in FORMATS if name != "lerobot"]
@@ -152,6 +152,16 @@ class TestVlnce:
         path.write_bytes(gzip.compress(json.dumps({"episodes": episodes}).encode()))
         with pytest.raises(ProductError, match=said):
             VlnceFormat().check(tmp_path, scenes[0])
+
+    def test_a_flight_that_turns_back_on_the_spot_loses_no_corner_of_its_path(self) -> None:
+        out = np.column_stack([np.linspace(0, 1.12, 80), np.zeros(80), np.full(80, 1.2)])
+        back = np.column_stack([np.linspace(1.12, 0.2, 70), np.linspace(0, 0.3, 70), np.full(70, 1.2)])
+        path = np.array(resampled(np.vstack([out, back])))
+        assert np.linalg.norm(path - (1.12, 0, 1.2), axis=1).min() < 0.02
+        assert np.linalg.norm(np.diff(path, axis=0), axis=1).max() <= REFERENCE_STEP + 1e-3
+        straight = np.array(resampled(out))
+        np.testing.assert_allclose(straight[:, 0], [0, 0.25, 0.5, 0.75, 1.0, 1.12], atol=1e-4)
+        assert resampled(np.zeros((5, 3))) == [[0.0, 0.0, 0.0]], "who does not move is where it is"
 
     def test_one_scene_is_a_file_of_its_own(self, exports: dict[str, Path]) -> None:
         paths = list(exports["vlnce"].glob("*/content/hall.json.gz"))
