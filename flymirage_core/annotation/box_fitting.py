@@ -21,8 +21,8 @@ SNAP: Final = 1.08
 SURFACE_MARGIN: Final = 0.03
 """Metres added to both sides when areas are compared, so that thin things have one."""
 MAX_FIT_POINTS: Final = 4000
-ON_FLOOR: Final = 0.16
-"""Metres above the floor below which a thing stands on it: the lowest centimetres are culled with the floor."""
+ON_FLOOR: Final = 0.115
+"""Metres above what is culled with the floor within which a thing begins that stands on it."""
 MIN_SUPPORT_SHARE: Final = 0.3
 """Share of a floating box's plan that must lie over another for it to stand there."""
 MAX_SUPPORT_GAP: Final = 1.5
@@ -172,7 +172,7 @@ def fit_box(
     low, high = _trimmed_range(cloud[:, 2:].astype(np.float64), HEIGHT_TRIM)
     bottom, top = float(low[0]), float(high[0])
     floor = float(structure.floor_map.at(plan.centre[None])[0])
-    if bottom - floor < ON_FLOOR:
+    if bottom < structure.floor_top.at(plan.centre[None])[0] + ON_FLOOR:
         bottom = min(floor, bottom)
     box = FittedBox(
         (float(plan.centre[0]), float(plan.centre[1]), (bottom + top) / 2),
@@ -226,9 +226,14 @@ def settle(boxes: Sequence[FittedBox], structure: RoomStructure, faces: Sequence
     return [_on_face(_settled(box, boxes, structure), faces, structure) for box in boxes]
 
 
+def on_floor(box: FittedBox, structure: RoomStructure) -> bool:
+    """Whether a box begins where the floor ends."""
+    return bool(box.bottom < structure.floor_top.at(np.array([box.centre[:2]]))[0] + ON_FLOOR)
+
+
 def _on_face(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStructure) -> FittedBox:
     """The box with its bottom on the level face right below it: the lowest centimetres are cut away with the face."""
-    if box.bottom - structure.floor <= ON_FLOOR or box.hanging:
+    if on_floor(box, structure) or box.hanging:
         return box
     corners, area = footprint_corners(box), box.size[0] * box.size[1]
     levels = [
@@ -242,9 +247,9 @@ def _on_face(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStructur
 
 
 def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> FittedBox:
-    floor = float(structure.floor_map.at(np.array([box.centre[:2]]))[0])
-    if box.bottom - floor <= ON_FLOOR:
+    if on_floor(box, structure):
         return box
+    floor = float(structure.floor_map.at(np.array([box.centre[:2]]))[0])
     support = floor
     for other in boxes:
         around = other.top > box.top and other.bottom < box.bottom

@@ -15,9 +15,9 @@ from flymirage_core.annotation.appearance import Observation, observe, window_of
 from flymirage_core.annotation.box_fitting import (
     MAX_CARRIED_GAP,
     MAX_WALL_GAP,
-    ON_FLOOR,
     FittedBox,
     fit_box,
+    on_floor,
     settle,
 )
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
@@ -35,6 +35,7 @@ from flymirage_core.annotation.picture_joins import join_pieces
 from flymirage_core.annotation.picture_votes import look_at, votes
 from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
+from flymirage_core.annotation.rows import in_row
 from flymirage_core.annotation.segmentation import (
     colour_parts,
     neighbour_edges,
@@ -74,7 +75,7 @@ FULL_EVIDENCE: Final = 12
 class EmbeddedAnnotator:
     """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
 
-    version = "3"
+    version = "4"
 
     def __init__(self, settings: AnnotationSettings, detector: YoloxDetector | None = None) -> None:
         self.settings = settings
@@ -193,12 +194,13 @@ def _fitted(parts: PartSet, objects: NDArray[np.intp], cloud: FusedPoints, struc
         fit_box(
             cloud.points,
             cloud.to_camera,
-            objects[part.members],
+            objects[part.members[piece]],
             structure,
             MAX_CARRIED_GAP if part.thing else MAX_WALL_GAP,
         )
         for _, part in sorted(parts.parts.items())
-        if len(part) >= MIN_OBJECT_POINTS
+        for piece in in_row(part.points, structure.yaw)
+        if len(piece) >= MIN_OBJECT_POINTS
     ]
 
 
@@ -247,7 +249,7 @@ def support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStruct
         return Support.WALL
     if box.hanging:
         return Support.CEILING
-    if box.bottom - structure.floor < ON_FLOOR:
+    if on_floor(box, structure):
         return Support.FLOOR
     carried = any(other is not box and abs(other.top - box.bottom) < RESTING and _over(box, other) for other in boxes)
     near_wall = any(

@@ -19,11 +19,14 @@ from flymirage_core.annotation.room_structure import (
     PEAK_WINDOW,
     VERTICAL,
     WALL_BIN,
+    WALL_THICKNESS,
+    HeightMap,
     RoomStructure,
     Wall,
     aligned,
     floor_height,
     floor_relief,
+    goes_on_behind,
     room_yaw,
     with_back,
 )
@@ -54,14 +57,28 @@ MIN_FILLED: Final = 3
 """Cells of a column in which the face is seen."""
 MAX_GAP: Final = 1.65
 """Metres of a face that something before it may hide."""
-MIN_LENGTH: Final = 4.5
+MIN_LENGTH: Final = 6.5
 """Metres; shorter faces may be those of objects."""
 MIN_SEEN: Final = 0.5
 """Share of a face's columns that are seen; rows of stalls have gaps, and posts above their counters."""
 BEHIND: Final = 0.3
 """Metres behind a face from which a camera was behind it."""
+HOUSE: Final = 3.0
+"""Metres: what is lower, and has a camera on both sides, is a row of things."""
+MAX_ROW_DEPTH: Final = 3.0
+"""Metres before the face that ends the place, in which fences and stalls stand in rows as long as faces."""
+FACE_CLEARANCE: Final = 0.08
+FACE_SKIN: Final = 0.16
+"""Metres, as of `Wall`; large places have large splats, whose faces are uneven, and the ground ..."""
 GROUND_CLEARANCE: Final = 0.09
-"""Metres; large places have large splats, whose ground is uneven."""
+GROUND_RELIEF: Final = 0.22
+"""... is seen higher than it is, by up to so many metres, ..."""
+GROUND_SMOOTHING: Final = 11
+"""... over many cells of its map (1.7 m): what is high over fewer is an object."""
+GROUND_REACH: Final = 21
+"""Cells (3.2 m), of whose heights ..."""
+LOW: Final = 10
+"""... this percentile is where things stand."""
 
 
 def sees_sky(frames: Sequence[Frame]) -> bool:
@@ -91,10 +108,15 @@ def find_open_air(points: Float32, normals: Float32, square: Float32, eyes: Floa
     upright = (np.abs(normals[:, 2]) < VERTICAL) & (normals != 0).any(axis=1)
     yaw = room_yaw(points[upright], normals[upright])
     walls = [w for k in range(4) for w in _faces(points, normals, upright, yaw + k * np.pi / 2, floor)]
+    walls = [wall for wall in walls if not any(goes_on_behind(other, wall, MAX_ROW_DEPTH) for other in walls)]
     yaw, walls = aligned(points, normals, upright, yaw, walls)
-    walls = [_closing(with_back(wall, square), eyes) for wall in walls]
-    relief = floor_relief(points, normals, floor)
-    return RoomStructure(floor, None, float(yaw % (np.pi / 2)), tuple(walls), relief, None, GROUND_CLEARANCE)
+    closing = [_closing(with_back(wall, square), eyes, points) for wall in walls]
+    relief = floor_relief(points, normals, floor, GROUND_RELIEF)
+    seen = HeightMap(relief.origin, ndimage.median_filter(relief.heights, GROUND_SMOOTHING))
+    ground = HeightMap(relief.origin, ndimage.percentile_filter(seen.heights, LOW, GROUND_REACH))
+    top = seen.raised(GROUND_CLEARANCE)
+    known = tuple(wall for wall in closing if wall is not None)
+    return RoomStructure(floor, None, float(yaw % (np.pi / 2)), known, ground, top, None)
 
 
 def _faces(points: Float32, normals: Float32, upright: Bool, azimuth: float, floor: float) -> list[Wall]:
@@ -115,7 +137,8 @@ def _faces(points: Float32, normals: Float32, upright: Bool, azimuth: float, flo
         on = facing & (np.abs(offsets - offset) < FACE_DEPTH)
         offset = float(np.median(offsets[on]))
         stretches = _stretches(along[on], points[on, 2] - floor)
-        walls += [Wall(normal, offset, start, end, offset) for start, end in stretches]
+        slab = (WALL_THICKNESS, FACE_CLEARANCE, FACE_SKIN)
+        walls += [Wall(normal, offset, start, end, offset, *slab) for start, end in stretches]
     return walls
 
 
@@ -137,8 +160,10 @@ def _stretches(along: Float32, heights: Float32) -> list[tuple[float, float]]:
     return found
 
 
-def _closing(wall: Wall, eyes: Float64) -> Wall:
-    """The wall, without an end behind if no camera was there."""
+def _closing(wall: Wall, eyes: Float64, points: Float32) -> Wall | None:
+    """The wall, without an end behind if no camera was there; else none, unless it is as high as a house."""
     along = eyes[:, :2] @ wall.direction
-    behind = (wall.distance(eyes) < -BEHIND) & (along > wall.start) & (along < wall.end)
-    return wall if behind.any() else replace(wall, thickness=np.inf)
+    if not ((wall.distance(eyes) < -BEHIND) & (along > wall.start) & (along < wall.end)).any():
+        return replace(wall, thickness=np.inf)
+    top = float(np.percentile(points[wall.contains(points), 2], 95))
+    return wall if top > HOUSE else None

@@ -29,22 +29,33 @@ CEILING_PEAK: Final = 0.5
 MIN_ROOM_HEIGHT: Final = 1.9
 DEFAULT_ROOM_HEIGHT: Final = 2.6
 """Where no ceiling is seen: how high up something must reach to be a wall."""
-MIN_WALL_AREA: Final = 1.2
-"""Square metres that a wall shows at least."""
-MIN_WALL_TOP: Final = 0.9
-"""Metres of length along which it reaches the ceiling."""
+MIN_WALL_TOP: Final = 1.5
+"""Metres of length along which a wall reaches the ceiling ..."""
+UPPER_PART: Final = 1.2
+"""... and so many metres below, of which ..."""
+MIN_FILLED: Final = 0.6
+"""... this share is seen."""
+MAX_FURNITURE_DEPTH: Final = 0.7
+"""Metres between a wall and the face of what stands at it, as high as the wall."""
+MIN_TRIM: Final = 0.9
+"""Metres along which trim reaches the ceiling ..."""
+MAX_TRIM_DEPTH: Final = 0.25
+"""... so far before it at most; it and what is below in its plane, panelling and headboards, count as wall."""
+MAX_WALL_GAP: Final = 3.0
+"""Metres of a wall that windows and cupboards may take."""
 CEILING_REACH: Final = 0.45
 """Metres below the ceiling that count as reaching it."""
 ABOVE_FURNITURE: Final = 2.3
 """Metres above the floor to which only walls reach, in rooms that are higher."""
-MAX_BEHIND: Final = 0.004
-"""Share of all points that may lie behind the outermost wall."""
+MIN_TOP_AREA: Final = 0.4
+"""Square metres up there from which much of a wall is seen there."""
+MAX_BEHIND: Final = (0.004, 0.06)
+"""Share of all points that may lie behind the outermost wall: if little of it is seen up there, and if much is."""
 WALL_THICKNESS: Final = 0.12
 """Metres behind a wall's plane that still are the wall."""
 WALL_CLEARANCE: Final = 0.06
 """Metres before it."""
 WALL_SKIN: Final = 0.10
-"""Metres before it where what faces as the wall does is the wall, seen askance."""
 FLOOR_CLEARANCE: Final = 0.045
 CEILING_CLEARANCE: Final = 0.07
 BACK_PERCENTILE: Final = 25
@@ -87,6 +98,8 @@ class Wall:
         float  # offset of the plane as seen straight on; `offset` is that of most of its points, which come out nearer
     )
     thickness: float = WALL_THICKNESS  # metres behind the plane that still are the wall
+    clearance: float = WALL_CLEARANCE  # metres before it that are
+    skin: float = WALL_SKIN  # metres before it where what faces as the wall does is the wall, seen askance
 
     @property
     def direction(self) -> Float64:
@@ -100,7 +113,7 @@ class Wall:
         """(N,) whether points (N, 3) belong to the wall's slab."""
         along = points[:, :2] @ self.direction
         distance = self.distance(points)
-        near = (distance < WALL_CLEARANCE) & (distance > -self.thickness)
+        near = (distance < self.clearance) & (distance > -self.thickness)
         return np.asarray(near & (along > self.start - WALL_END) & (along < self.end + WALL_END))
 
 
@@ -116,6 +129,9 @@ class HeightMap:
         cells = np.clip(((points[:, :2] - self.origin) / MAP_CELL).astype(int), 0, np.array(self.heights.shape) - 1)
         return np.asarray(self.heights[cells[:, 0], cells[:, 1]])
 
+    def raised(self, by: float) -> "HeightMap":
+        return HeightMap(self.origin, self.heights + by)
+
 
 @dataclass(frozen=True, eq=False)
 class RoomStructure:
@@ -125,16 +141,16 @@ class RoomStructure:
     ceiling: float | None
     yaw: float
     walls: tuple[Wall, ...]
-    floor_map: HeightMap
+    floor_map: HeightMap  # what things stand on
+    floor_top: HeightMap  # below this all is floor
     ceiling_map: HeightMap | None
-    floor_clearance: float = FLOOR_CLEARANCE  # metres above the floor that still are the floor
 
     def contains(self, points: Float32) -> Bool:
         """(N,) whether points (N, 3) belong to the floor, the ceiling or a wall.
 
         Only slabs belong to it, never all that is behind a wall: a flat has more than one room.
         """
-        inside = points[:, 2] <= self.floor_map.at(points) + self.floor_clearance
+        inside = points[:, 2] <= self.floor_top.at(points)
         if self.ceiling_map is not None:
             inside |= points[:, 2] >= self.ceiling_map.at(points) - CEILING_CLEARANCE
         for wall in self.walls:
@@ -147,7 +163,7 @@ class RoomStructure:
         for wall in self.walls:
             along = points[:, :2] @ wall.direction
             near = (
-                (np.abs(wall.distance(points)) < WALL_SKIN)
+                (np.abs(wall.distance(points)) < wall.skin)
                 & (along > wall.start - WALL_END)
                 & (along < wall.end + WALL_END)
             )
@@ -175,15 +191,16 @@ def find_structure(points: Float32, normals: Float32, square: Float32, voxel: fl
         voxel: metres.
     """
     if len(points) == 0:
-        return RoomStructure(0.0, None, 0.0, (), HeightMap(np.zeros(2), np.zeros((1, 1))), None)
+        level = HeightMap(np.zeros(2), np.zeros((1, 1)))
+        return RoomStructure(0.0, None, 0.0, (), level, level.raised(FLOOR_CLEARANCE), None)
     floor = floor_height(points, normals)
     ceiling = _ceiling(points, normals, floor)
     upright = np.abs(normals[:, 2]) < VERTICAL
     upright &= (normals != 0).any(axis=1)
     yaw = room_yaw(points[upright], normals[upright])
     ceiling_reach = ceiling - CEILING_REACH if ceiling is not None else floor + DEFAULT_ROOM_HEIGHT - CEILING_REACH
-    top = min(ceiling_reach, floor + ABOVE_FURNITURE)
-    walls = [w for k in range(4) for w in _walls_facing(points, normals, upright, yaw + k * np.pi / 2, top, voxel)]
+    reach = (min(ceiling_reach, floor + ABOVE_FURNITURE), ceiling_reach)
+    walls = [w for k in range(4) for w in _walls_facing(points, normals, upright, yaw + k * np.pi / 2, reach, voxel)]
     yaw, walls = aligned(points, normals, upright, yaw, walls)
     walls = [with_back(wall, square) for wall in walls]
     ceiling_map = None
@@ -191,8 +208,9 @@ def find_structure(points: Float32, normals: Float32, square: Float32, voxel: fl
         ceiling_map = _height_map(
             points, (normals[:, 2] < -HORIZONTAL) & (points[:, 2] > ceiling - CEILING_RELIEF), ceiling
         )
-    floor_map = floor_relief(points, normals, floor)
-    return RoomStructure(floor, ceiling, float(yaw % (np.pi / 2)), tuple(walls), floor_map, ceiling_map)
+    relief = floor_relief(points, normals, floor, FLOOR_RELIEF)
+    top = relief.raised(FLOOR_CLEARANCE)
+    return RoomStructure(floor, ceiling, float(yaw % (np.pi / 2)), tuple(walls), relief, top, ceiling_map)
 
 
 def room_yaw(points: Float32, normals: Float32) -> float:
@@ -248,9 +266,12 @@ def _first_peak(heights: Float32, share: float) -> float:
 
 
 def _walls_facing(
-    points: Float32, normals: Float32, upright: Bool, azimuth: float, top: float, voxel: float
+    points: Float32, normals: Float32, upright: Bool, azimuth: float, reach: tuple[float, float], voxel: float
 ) -> list[Wall]:
-    """Walls whose normal has this azimuth: planes of enough area that reach above ``top``, or with nothing behind."""
+    """Walls whose normal has this azimuth.
+
+    ``reach``: metres above which only walls reach, and above which something reaches the ceiling.
+    """
     normal = np.array([np.cos(azimuth), np.sin(azimuth)])
     direction = np.array([-normal[1], normal[0]])
     facing = upright & (normals[:, :2] @ normal > ALONG_WALL)
@@ -261,21 +282,51 @@ def _walls_facing(
     counts, edges = np.histogram(
         offsets, np.arange(offsets.min() - 2 * WALL_BIN, offsets.max() + 3 * WALL_BIN, WALL_BIN)
     )
-    smoothed = np.convolve(counts, [1, 1, 1], "same")
+    smoothed = np.convolve(counts, [1, 1, 1], "same") - 1e-6 * np.arange(len(counts))  # of equal ones the first
     peaks = (smoothed >= ndimage.maximum_filter1d(smoothed, PEAK_WINDOW)) & (smoothed * voxel**2 > MIN_PEAK_AREA)
-    walls = []
+    walls, trims = [], []
     for j in np.flatnonzero(peaks):
         offset = (edges[j] + edges[j + 1]) / 2
         on = np.abs(offsets - offset) < ON_PLANE
         offset = float(np.median(offsets[on]))
-        cells = np.unique(np.floor(np.stack([along[on], heights[on]], axis=1) / MAP_CELL), axis=0)  # (C, 2)
-        reaching = np.unique(cells[cells[:, 1] * MAP_CELL > top, 0])
-        outermost = (all_offsets < offset - WALL_THICKNESS).mean() < MAX_BEHIND and np.ptp(
-            heights[on]
-        ) > MIN_OUTER_HEIGHT
-        if len(cells) * MAP_CELL**2 > MIN_WALL_AREA and (len(reaching) * MAP_CELL > MIN_WALL_TOP or outermost):
-            walls.append(Wall(normal, offset, float(along[on].min()), float(along[on].max()), offset))
-    return walls
+        behind = (all_offsets < offset - WALL_THICKNESS).mean()
+        high = (heights[on] > reach[0]).sum() * voxel**2 > MIN_TOP_AREA
+        whole = Wall(normal, offset, float(along[on].min()), float(along[on].max()), offset)
+        if behind < MAX_BEHIND[int(high)] and np.ptp(heights[on]) > MIN_OUTER_HEIGHT:
+            walls.append(whole)
+            continue
+        walls += [Wall(normal, offset, *ends, offset) for ends in _stretches(along[on], heights[on], reach[0])]
+        if len(np.unique((along[on][heights[on] > reach[1]] / MAP_CELL).astype(int))) * MAP_CELL > MIN_TRIM:
+            trims.append(whole)
+    walls = [wall for wall in walls if not any(goes_on_behind(other, wall, MAX_FURNITURE_DEPTH) for other in walls)]
+    return walls + [trim for trim in trims if any(goes_on_behind(w, trim, MAX_TRIM_DEPTH) for w in walls)]
+
+
+def goes_on_behind(other: Wall, wall: Wall, depth: float) -> bool:
+    """Whether another wall goes on within ``depth`` metres behind one, which then is something before it."""
+    parallel = other.normal @ wall.normal > ALONG_WALL and 0 < wall.offset - other.offset < depth
+    return bool(parallel and other.start - REACH_ON < wall.start and wall.end < other.end + REACH_ON)
+
+
+def _stretches(along: Float32, heights: Float32, top: float) -> list[tuple[float, float]]:
+    """Where a plane goes on from breast height to above ``top``: (start, end) along it.
+
+    Beams lie in one plane with the furniture below them; between the two there is nothing.
+    """
+    origin, foot = float(along.min()) - MAX_WALL_GAP, top - UPPER_PART  # room for the closing at both ends
+    columns = int((along.max() - origin + MAX_WALL_GAP) / MAP_CELL) + 1
+    filled = np.zeros((columns, int(UPPER_PART / MAP_CELL) + 1), bool)
+    row = np.floor((heights - foot) / MAP_CELL).astype(int)
+    inside = row >= 0
+    filled[((along[inside] - origin) / MAP_CELL).astype(int), np.minimum(row[inside], filled.shape[1] - 1)] = True
+    tall = filled[:, -1] & (filled.mean(axis=1) >= MIN_FILLED)
+    numbers, count = ndimage.label(ndimage.binary_closing(tall, np.ones(int(MAX_WALL_GAP / MAP_CELL), bool)))
+    runs = [np.flatnonzero(numbers == k) for k in range(1, count + 1)]
+    return [
+        (origin + float(run[0]) * MAP_CELL, origin + float(run[-1] + 1) * MAP_CELL)
+        for run in runs
+        if tall[run].sum() * MAP_CELL > MIN_WALL_TOP
+    ]
 
 
 def aligned(
@@ -321,9 +372,9 @@ def with_back(wall: Wall, square: Float32) -> Wall:
     return replace(wall, back=wall.offset + float(np.percentile(distance[near], BACK_PERCENTILE)))
 
 
-def floor_relief(points: Float32, normals: Float32, floor: float) -> HeightMap:
-    """The heights of a floor near ``floor``, of points (N, 3) with ``normals`` (N, 3)."""
-    level = (normals[:, 2] > HORIZONTAL) & (np.abs(points[:, 2] - floor) < FLOOR_RELIEF)
+def floor_relief(points: Float32, normals: Float32, floor: float, relief: float) -> HeightMap:
+    """The heights of a floor within ``relief`` of ``floor``, of points (N, 3) with ``normals`` (N, 3)."""
+    level = (normals[:, 2] > HORIZONTAL) & (np.abs(points[:, 2] - floor) < relief)
     return _height_map(points, level, floor)
 
 
