@@ -98,8 +98,8 @@ def synthetic_scenes(folder: Path) -> list[SceneProducts]:
 def reading(folder: Path) -> None:
     scene = flymirage_core.dataset.open(folder).episodes[0].scene
     paths = sorted((folder / "videos").rglob("*.mp4"))[:1]
-    for name, with_depth in (("RGB", False), ("RGB and depth", True)):
-        dataset = flymirage_core.dataset.open(folder, scenes=[scene], depth=with_depth)
+    for name, streams in READ.items():
+        dataset = flymirage_core.dataset.open(folder, scenes=[scene], **streams)
         count = min(MOST_FRAMES, len(dataset))
         orders = {"sequential": range(count), "random": np.random.default_rng(0).permutation(len(dataset))[:count]}
         for order, chosen in orders.items():
@@ -115,6 +115,12 @@ def reading(folder: Path) -> None:
 
 
 MOST_FRAMES = 300
+READ: dict[str, dict[str, bool]] = {
+    "RGB": {},
+    "depth": {"rgb": False, "depth": True},
+    "RGB and depth": {"depth": True},
+    "RGB, depth and masks": {"depth": True, "masks": True},
+}
 
 
 def decoded(paths: list[Path]) -> Iterator[np.ndarray]:

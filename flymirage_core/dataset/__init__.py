@@ -14,6 +14,7 @@ def open(
     scenes: Sequence[str] = (),
     delta_timestamps: Mapping[str, Sequence[float]] | None = None,
     *,
+    rgb: bool = True,
     depth: bool = False,
     masks: bool = False,
 ) -> "FlightDataset":
@@ -21,4 +22,4 @@ def open(
     nothing of the ``split`` or ``scenes``."""
     from flymirage_core.dataset.torch_dataset import FlightDataset  # late: torch takes a second to load
 
-    return FlightDataset(Path(path), split, scenes, delta_timestamps, depth=depth, masks=masks)
+    return FlightDataset(Path(path), split, scenes, delta_timestamps, rgb=rgb, depth=depth, masks=masks)

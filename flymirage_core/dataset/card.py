@@ -135,9 +135,9 @@ def _prompts_and_splits(s: DatasetStatistics) -> list[str]:
 def _left_out(s: DatasetStatistics) -> list[str]:
     return [
         "## What was left out, and why",
-        f"{s.flights} flights were flown; {s.rejected_tasks} further tasks could not be planned. {s.dropped} "
-        f"flights were dropped by the verdict; {s.kept_without_prompts} kept ones have no unambiguous instruction "
-        "and are no episodes.",
+        f"Flights flown: {s.flights}; further tasks that could not be planned: {s.rejected_tasks}; dropped by the "
+        f"verdict: {s.dropped}; kept, but without an unambiguous instruction and so no episode: "
+        f"{s.kept_without_prompts}.",
         "",
         markdown_table(("gate failed (a flight may fail several)", "flights"), _counts(s.dropped_by_gate)),
     ]

@@ -39,7 +39,8 @@ class FlightDataset(Dataset[dict[str, Any]]):
     """Frames of a LeRobot export; ``dataset[i]`` is a dictionary of tensors.
 
     ``observation.images.front`` (3, H, W) float32 in 0..1; ``observation.state`` (13,), ``action`` (4,) and the
-    ``sim.*`` columns float32, units in conventions.json; ``task`` the instruction. With ``depth=True`` also
+    ``sim.*`` columns float32, units in conventions.json; ``task`` the instruction. With ``rgb=False`` no picture is
+    decoded, for those who learn from depth alone or from states. With ``depth=True`` also
     ``observation.images.front_depth`` (1, H, W) float32 metres, 0 = no return; with ``masks=True`` ``target_mask``
     (H, W) bool: the pixels whose depth lies in the target's box. A key of ``delta_timestamps`` (seconds, multiples of
     1 / fps) gets a leading time axis, clamped to the episode, and ``<key>_is_pad`` (T,) says where it was clamped.
@@ -52,6 +53,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
         scenes: Sequence[str] = (),
         delta_timestamps: Mapping[str, Sequence[float]] | None = None,
         *,
+        rgb: bool = True,
         depth: bool = False,
         masks: bool = False,
     ) -> None:
@@ -68,7 +70,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
         if (depth or masks) and DEPTH_KEY not in self.export.info["features"]:
             raise InputError(f"{folder} was exported without depth: export it again with --depth png16")
         self.numeric = [n for n, f in self.export.info["features"].items() if f["dtype"] == "float32"]
-        self._depth, self._masks = depth, masks
+        self._rgb_wanted, self._depth, self._masks = rgb, depth, masks
         self._deltas = self._frame_deltas(delta_timestamps or {})
         self._ends = np.cumsum([e.length for e in self.episodes]).tolist()
         self._columns: dict[int, dict[str, NDArray[Any]]] = {}
@@ -96,7 +98,8 @@ class FlightDataset(Dataset[dict[str, Any]]):
             "timestamp": torch.tensor(frame / self.fps, dtype=torch.float32),
         }
         readers = {name: _row_of(columns[name]) for name in self.numeric if name not in INDEX_COLUMNS}
-        readers[RGB_KEY] = lambda i: self._rgb(episode, i)
+        if self._rgb_wanted:
+            readers[RGB_KEY] = lambda i: self._rgb(episode, i)
         if self._depth:
             readers[DEPTH_KEY] = lambda i: torch.from_numpy(self._depth_mm(episode, i) / np.float32(1000))[None]
         if self._masks:
@@ -125,8 +128,8 @@ class FlightDataset(Dataset[dict[str, Any]]):
         return {name: torch.stack([read(i) for i in clamped]), f"{name}_is_pad": pad}
 
     def _frame_deltas(self, seconds: Mapping[str, Sequence[float]]) -> dict[str, list[int]]:
-        known = [*(n for n in self.numeric if n not in INDEX_COLUMNS), RGB_KEY]
-        known += [key for key, on in ((DEPTH_KEY, self._depth), (MASK_KEY, self._masks)) if on]
+        pictures = ((RGB_KEY, self._rgb_wanted), (DEPTH_KEY, self._depth), (MASK_KEY, self._masks))
+        known = [n for n in self.numeric if n not in INDEX_COLUMNS] + [key for key, on in pictures if on]
         for name, deltas in seconds.items():
             if name not in known:
                 raise InputError(f"delta_timestamps: there is no {name!r}; there are {', '.join(known)}")

@@ -79,7 +79,7 @@ class VlnceFormat(SceneFolders):
             "vlnce": {
                 "frame": "not Habitat's: right-handed, z up, metres; start_rotation xyzw, body (FLU) to world",
                 "goals": f"position: where the flight ends; radius {GOAL_RADIUS:g} m; object: the target's box centre",
-                "reference_path": f"the flown path, a point every {REFERENCE_STEP:g} m of arc, at sharp turns and its end",
+                "reference_path": f"the flown path, a point every {REFERENCE_STEP:g} m, at sharp turns, and its end",
                 "locations": "the reference path again, as VLN-CE's ground truth has it",
                 "long_horizon": "several flights of one task set, flown one after the other",
             }

@@ -84,6 +84,16 @@ def test_what_cannot_be_had_is_said(folder: Path, cafe: SceneProducts, tmp_path:
         flymirage_core.dataset.open(flat, depth=True)
 
 
+def test_depth_alone_decodes_no_video(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = flymirage_core.dataset.open(folder, depth=True)[3]
+    monkeypatch.setattr("av.open", lambda *_: pytest.fail("a video was opened"))
+    alone = flymirage_core.dataset.open(folder, rgb=False, depth=True)[3]
+    assert RGB_KEY not in alone
+    torch.testing.assert_close(alone[DEPTH_KEY], whole[DEPTH_KEY])
+    with pytest.raises(InputError, match="there is no 'observation.images.front'"):
+        flymirage_core.dataset.open(folder, rgb=False, delta_timestamps={RGB_KEY: [0.1]})
+
+
 def test_workers_read_the_same_frames(folder: Path) -> None:
     dataset = flymirage_core.dataset.open(folder, depth=True)
     alone = [dataset[i] for i in range(len(dataset))]  # its files are open when the workers are forked
