@@ -83,7 +83,7 @@ class TestEpisodes:
         manifest = build_manifest([silent])
         assert [e.flight_id for e in manifest.episodes] == [0, 2]
         assert manifest.statistics.kept_without_prompts == 1
-        assert "1 kept ones have no unambiguous instruction" in manifest.card()
+        assert "without an unambiguous instruction and so no episode: 1" in manifest.card()
 
     def test_terms_name_who_imposes_them(self, cafe: SceneProducts) -> None:
         assert terms_of(cafe) == "no third-party terms"

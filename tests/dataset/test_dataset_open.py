@@ -90,7 +90,7 @@ def test_depth_alone_decodes_no_video(folder: Path, monkeypatch: pytest.MonkeyPa
     alone = flymirage_core.dataset.open(folder, rgb=False, depth=True)[3]
     assert RGB_KEY not in alone
     torch.testing.assert_close(alone[DEPTH_KEY], whole[DEPTH_KEY])
-    with pytest.raises(InputError, match="there is no 'observation.images.front'"):
+    with pytest.raises(InputError, match=r"there is no 'observation\.images\.front'"):
         flymirage_core.dataset.open(folder, rgb=False, delta_timestamps={RGB_KEY: [0.1]})
 
 
