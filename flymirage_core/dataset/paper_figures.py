@@ -55,7 +55,11 @@ def figures(statistics: DatasetStatistics) -> list[Figure]:
         Figure("objects per scene", f"median {objects.get('median', 0):.0f}, {_span(objects)}", "60-100"),
         Figure("object labels", f"{s.labels:,}", "5,000+"),
         Figure("prompts per trajectory", f"{s.prompts_per_episode:.2f}", "2-3"),
-        Figure("prompts by kind", _counts({k.replace("_", "-"): n for k, n in s.prompts_per_kind.items()}), "up to one of each of three kinds"),
+        Figure(
+            "prompts by kind",
+            _counts({k.replace("_", "-"): n for k, n in s.prompts_per_kind.items()}),
+            "up to one of each of three kinds",
+        ),
         Figure("kept by the verdict", _share(s.flights - s.dropped, s.flights), NOT_STATED),
         Figure("kept, but nothing sure to say", _share(s.kept_without_prompts, s.flights - s.dropped), NOT_STATED),
         Figure("categories", _counts(s.scenes_per_category), PAPER_CATEGORIES),
