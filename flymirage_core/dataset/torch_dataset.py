@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from torch.utils.data import Dataset
 
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
-from flymirage_core.dataset.depth_geometry import camera_of, points_of
+from flymirage_core.annotation.instances import instance_ids
+from flymirage_core.dataset.depth_geometry import camera_of
 from flymirage_core.dataset.export_folder import shard_folder
 from flymirage_core.dataset.lerobot_schema import DEPTH_KEY, INDEX_COLUMNS, RGB_KEY
 from flymirage_core.dataset.reader import EpisodeRecord, LeRobotFolder
@@ -29,8 +30,6 @@ from flymirage_core.errors import InputError, ProductError
 
 OPEN_FILES = 8
 """Videos and tables that a worker keeps open."""
-MASK_MARGIN = 0.03
-"""Metres by which the target's box is grown before depth points are asked whether they are in it."""
 MASK_KEY = "target_mask"
 T = TypeVar("T")
 
@@ -42,8 +41,9 @@ class FlightDataset(Dataset[dict[str, Any]]):
     ``sim.*`` columns float32, units in conventions.json; ``task`` the instruction. With ``rgb=False`` no picture is
     decoded, for those who learn from depth alone or from states. With ``depth=True`` also
     ``observation.images.front_depth`` (1, H, W) float32 metres, 0 = no return; with ``masks=True`` ``target_mask``
-    (H, W) bool: the pixels whose depth lies in the target's box. A key of ``delta_timestamps`` (seconds, multiples of
-    1 / fps) gets a leading time axis, clamped to the episode, and ``<key>_is_pad`` (T,) says where it was clamped.
+    (H, W) bool: the pixels whose depth lies in the target's box, as `annotation.instances` has it. A key of
+    ``delta_timestamps`` (seconds, multiples of 1 / fps) gets a leading time axis, clamped to the episode, and
+    ``<key>_is_pad`` (T,) says where it was clamped.
     """
 
     def __init__(
@@ -77,6 +77,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
         self._videos: OrderedDict[Path, _Video] = OrderedDict()
         self._tables: OrderedDict[Path, _DepthTable] = OrderedDict()
         self._boxes: dict[str, BoxMap] = {}
+        self._last_depth: tuple[tuple[Path, int] | None, NDArray[np.float32]] = (None, np.zeros((0, 0), np.float32))
         self._process = os.getpid()
 
     def __len__(self) -> int:
@@ -101,7 +102,7 @@ class FlightDataset(Dataset[dict[str, Any]]):
         if self._rgb_wanted:
             readers[RGB_KEY] = lambda i: self._rgb(episode, i)
         if self._depth:
-            readers[DEPTH_KEY] = lambda i: torch.from_numpy(self._depth_mm(episode, i) / np.float32(1000))[None]
+            readers[DEPTH_KEY] = lambda i: torch.from_numpy(self._depth_metres(episode, i).copy())[None]
         if self._masks:
             readers[MASK_KEY] = lambda i: self._mask(episode, i, columns["observation.state"][i])
         for name, read in readers.items():
@@ -152,16 +153,20 @@ class FlightDataset(Dataset[dict[str, Any]]):
         # By numpy: torch would wake all its threads for each picture, and on a busy machine wait for them.
         return torch.from_numpy(np.divide(planes, np.float32(255), dtype=np.float32))
 
-    def _depth_mm(self, episode: EpisodeRecord, frame: int) -> NDArray[np.uint16]:
+    def _depth_metres(self, episode: EpisodeRecord, frame: int) -> NDArray[np.float32]:
+        """(H, W), 0 = no return; the last one is kept, since the mask asks for it again."""
         path, first = self.export.data(episode)
-        table = _kept_open(self._tables, path, lambda: _DepthTable(path))
-        return png16_from(table.png(first + frame), f"{path}: depth picture {frame} of episode {episode.index}")
+        if self._last_depth[0] != (path, first + frame):
+            table = _kept_open(self._tables, path, lambda: _DepthTable(path))
+            where = f"{path}: depth picture {frame} of episode {episode.index}"
+            metres = np.divide(png16_from(table.png(first + frame), where), np.float32(1000), dtype=np.float32)
+            self._last_depth = ((path, first + frame), metres)
+        return self._last_depth[1]
 
     def _mask(self, episode: EpisodeRecord, frame: int, state: NDArray[Any]) -> torch.Tensor:
         camera = camera_of(state, self.export.camera(episode.scene))
-        points = points_of(self._depth_mm(episode, frame), camera)  # (H, W, 3)
-        with np.errstate(invalid="ignore"):  # NaN, no return, is in no box
-            return torch.from_numpy(self._target(episode).contains(points, MASK_MARGIN))
+        ids = instance_ids(self._depth_metres(episode, frame), camera, (self._target(episode),))  # (H, W)
+        return torch.from_numpy(ids > 0)
 
     def _target(self, episode: EpisodeRecord) -> ObjectBox:
         if episode.scene not in self._boxes:
