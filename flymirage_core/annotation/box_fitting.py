@@ -223,7 +223,14 @@ def settle(boxes: Sequence[FittedBox], structure: RoomStructure, faces: Sequence
 
     ``faces`` are the broad level ones; where a box stands on one of them, that is where its bottom is.
     """
-    return [_on_face(_settled(box, boxes, structure), faces, structure) for box in boxes]
+    settled = []
+    for box in boxes:
+        level = _face_below(box, faces, structure)
+        if level is None:
+            box = _settled(box, boxes, structure)
+            level = _face_below(box, faces, structure)
+        settled.append(box if level is None else _between(box, level, box.top))
+    return settled
 
 
 def on_floor(box: FittedBox, structure: RoomStructure) -> bool:
@@ -231,10 +238,10 @@ def on_floor(box: FittedBox, structure: RoomStructure) -> bool:
     return bool(box.bottom < structure.floor_top.at(np.array([box.centre[:2]]))[0] + ON_FLOOR)
 
 
-def _on_face(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStructure) -> FittedBox:
-    """The box with its bottom on the level face right below it: the lowest centimetres are cut away with the face."""
+def _face_below(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStructure) -> float | None:
+    """Height of the level face right below a box: its lowest centimetres are cut away with the face."""
     if on_floor(box, structure) or box.hanging:
-        return box
+        return None
     corners, area = footprint_corners(box), box.size[0] * box.size[1]
     levels = [
         face.level
@@ -243,7 +250,7 @@ def _on_face(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStructur
         and face.level < box.top - 2 * FACE_SLACK
         and convex_overlap(corners, face.plan.corners) > MIN_SUPPORT_SHARE * area
     ]
-    return _between(box, max(levels), box.top) if levels else box
+    return max(levels, default=None)
 
 
 def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> FittedBox:

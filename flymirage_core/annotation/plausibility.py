@@ -20,6 +20,8 @@ SHORTEST: Final = 0.08
 """Metres; a box whose longest side is less is noise."""
 HIGH: Final = 1.9
 """Metres above the floor from which what does not hang freely is trim, or a part of the ceiling."""
+CEILING_TRIM: Final = 0.9
+"""Metres below the ceiling where trim begins in higher rooms."""
 TRIM_HEIGHT: Final = 0.16
 TRIM_GAP: Final = 0.15
 """Metres to a wall or to the ceiling within which a high thing is fixed to it."""
@@ -80,8 +82,9 @@ def _holds(body: FittedBox, box: FittedBox, points: Float32) -> bool:
 def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool:
     """High up at a wall, or flat up there, or with nothing above to hang from; what hangs freely is not."""
     at_wall = structure.wall_gap(box.centre, min(box.size[:2])) < TRIM_GAP
-    afloat = structure.ceiling_map is None
-    return clearance > HIGH and not box.hanging and (at_wall or afloat or box.size[2] < TRIM_HEIGHT)
+    afloat = structure.ceiling is None
+    high = HIGH if structure.ceiling is None else max(HIGH, structure.ceiling - structure.floor - CEILING_TRIM)
+    return clearance > high and not box.hanging and (at_wall or afloat or box.size[2] < TRIM_HEIGHT)
 
 
 def _is_ledge(box: FittedBox, structure: RoomStructure) -> bool:

@@ -29,6 +29,8 @@ MAX_PAINT_STEP: Final = 3.0
 """Colour step between neighbouring cells up to which both are bare wall."""
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
+MAX_PATTERN: Final = 3.0
+"""Colour step from the usual colour of a stretch without such a region, over the median of all: bricks, wallpaper."""
 FRONT_PERCENTILE: Final = 60
 MIN_AREA: Final = 0.06
 """Square metres."""
@@ -144,18 +146,25 @@ def _things(seen: NDArray[np.bool_], image: Float32) -> NDArray[np.intp]:
     edges = np.concatenate(pairs)
     graph = coo_matrix((np.ones(len(edges), np.int8), (edges[:, 0], edges[:, 1])), shape=(seen.size, seen.size))
     labels = connected_components(graph, directed=False)[1].reshape(seen.shape)
-    bare = seen & np.isin(labels, _bare_regions(seen, labels))
+    bare = _bare(seen, labels, image)
     kernel = np.ones((3, 3), bool)
     other = ndimage.binary_opening(ndimage.binary_fill_holes(seen & ~bare), kernel)
     return np.asarray(ndimage.label(other, kernel)[0], np.intp)
 
 
-def _bare_regions(seen: NDArray[np.bool_], labels: NDArray[np.int32]) -> list[int]:
-    """Numbers of the regions that are bare wall: the largest of each stretch of wall that is seen in one piece."""
+def _bare(seen: NDArray[np.bool_], labels: NDArray[np.int32], image: Float32) -> NDArray[np.bool_]:
+    """(H, W) cells of bare wall: the largest region of each stretch of wall that is seen in one piece.
+
+    Bricks and patterned paper make no large region: there it is what resembles the stretch's usual colour.
+    """
     stretches, count = ndimage.label(seen, np.ones((3, 3), bool))
-    bare = []
+    bare = np.zeros_like(seen)
     for k in range(1, count + 1):
-        found, counts = np.unique(labels[stretches == k], return_counts=True)
+        mine = stretches == k
+        found, counts = np.unique(labels[mine], return_counts=True)
         if counts.max() >= MIN_BARE_SHARE * counts.sum():
-            bare.append(int(found[counts.argmax()]))
+            bare |= mine & (labels == found[counts.argmax()])
+        else:
+            away = colour_step(image[mine], np.median(image[mine], axis=0))  # (C,)
+            bare[mine] = away < MAX_PATTERN * np.median(away)
     return bare
