@@ -66,7 +66,7 @@ def _dips(counts: Float64) -> Index:
     before = maximum_filter1d(logs, REACH + 1, origin=REACH // 2)
     after = maximum_filter1d(logs, REACH + 1, origin=-(REACH // 2))
     dip = (logs == minimum_filter1d(logs, REACH - 1)) & (np.minimum(before, after) - logs > DIP)
-    return np.flatnonzero(dip & ~np.roll(dip, 1))
+    return np.flatnonzero(dip[1:] & ~dip[:-1]) + 1
 
 
 def _between_necks(slices: Index, counts: Float64, heights: Float32, dips: Index, min_length: float) -> list[Index]:
