@@ -48,7 +48,7 @@ MORE_SETS = 26
 """Sets of tasks with which a scene of few or narrow ways still has 100 flights."""
 REACH, BALL = 8.0, 0.45
 """Drone views stand within REACH metres of c, with BALL metres free round them."""
-THUMBNAIL = (240, 180)
+THUMBNAIL = (192, 144)
 HEADER = (
     f"{'scene':52} {'s':>5} {'MB':>5} {'splats':>7} {'PSNR':>5} {'SSIM':>6} {'holes %':>7} {'things':>6} "
     f"{'labels':>6} {'missed':>6} {'tasks':>5} {'flown':>5} {'more':>5}"
@@ -256,7 +256,7 @@ def write_sheet(strips: list[np.ndarray], names: list[str], path: Path) -> None:
     sheet = np.concatenate([np.concatenate(cells[i : i + 2], axis=1) for i in range(0, len(cells), 2)])
     for quality in range(92, 20, -4):
         data = cv2.imencode(".jpg", sheet[:, :, ::-1], [cv2.IMWRITE_JPEG_QUALITY, quality])[1]
-        if len(data) <= 880_000:
+        if len(data) <= 400_000:
             break
     path.write_bytes(data.tobytes())
 
