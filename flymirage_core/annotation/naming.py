@@ -24,8 +24,10 @@ HALF_VOTE: Final = 1.5
 
 MAX_LEFT_OVER: Final = 0.75
 """Probability of being no object of its own from which a box that the detector does not know is dropped."""
+MAX_LEFT_OVER_NAMELESS: Final = 0.6
+"""The same of a box that nobody has a name for."""
 BULKY: Final = 0.4
-"""... unless it is as thick as this (metres) ..."""
+"""Metres; unless it is as thick as this ..."""
 WELL_SEEN: Final = 24
 """... and so many views saw it: that is a thing, though perhaps a new one."""
 NEAR_ENOUGH: Final = 3.0
@@ -71,7 +73,8 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
         return name.left_over < MAX_LEFT_OVER_AFAR
     thin, second, longest = sorted(box.size)
     bulky = thin >= BULKY and seen.views >= WELL_SEEN
-    if name.noun in BUILDING or (name.left_over >= MAX_LEFT_OVER and not bulky):
+    limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
+    if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
     return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
