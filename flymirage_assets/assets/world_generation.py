@@ -22,7 +22,7 @@ def world_generation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return stage.tools.scene_writer.describe(stage.scene, stage.origin.place)
 
     @product_asset(
-        version="3",
+        version="4",
         group="world_generation",
         settings=settings,
         sections=["generation", "cleaning"],
@@ -38,7 +38,7 @@ def world_generation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return stage.tools.image_painter.paint(description)
 
     @product_asset(
-        version="3",
+        version="4",
         group="world_generation",
         settings=settings,
         sections=["generation", "cleaning"],

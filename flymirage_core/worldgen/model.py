@@ -15,7 +15,7 @@ from flymirage_core.worldgen.assembly import assemble, build_truth
 from flymirage_core.worldgen.sampling import lit_world
 from flymirage_core.worldgen.viewpoints import best_view, panorama
 
-NAME = "offline 4"
+NAME = "offline 5"
 
 
 class OfflineWorldModel:

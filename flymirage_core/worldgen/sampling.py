@@ -37,6 +37,8 @@ FLUSH: Final = 0.02
 """Metres."""
 BACKING_SIDES: Final = 4.0
 """Side of a splat that backs a face, as a multiple of the spacing."""
+BACKING_MOST: Final = 0.45
+"""Metres: no such splat is larger, or it would reach out past its face's edges like fog."""
 BEHIND, MARGIN = 0.1, 0.14
 """Metres from a face to what backs it, and from a face's edges to the edges of that."""
 DOME_SPLATS: Final = 9000
@@ -99,7 +101,7 @@ def _backing(assembly: Assembly, spacings: Float, light: BakedLight) -> Gaussian
 
     Between the splats of a face a few per cent of what is behind shows, which would be nothing: a dark grid.
     """
-    sides = iter(BACKING_SIDES * spacings)
+    sides = iter(np.minimum(BACKING_SIDES * spacings, BACKING_MOST))
     parts = [(p, float(next(sides)), t.object_id) for t in assembly.things for p in t.parts]
     inner = [(_inset(p), side) for p, side, owner in parts if owner < 0 and _is_face(p)]
     surfels = Surfels.joined([surfels_of(p, side) for p, side in inner if p])

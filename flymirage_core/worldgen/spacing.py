@@ -19,6 +19,14 @@ LOOKED_AT: Final = 1 / 3
 """Root of how much of what drones see a part is, by which its spacing falls: at edges, error grows with the spacing."""
 LOOKED_AT_RANGE: Final = (0.5, 5.0)
 """Factors on the spacing between which that holds."""
+FLOWN: Final = np.array([13.0, 13.0, 3.2])
+"""Metres from c: what reaches into it is at most `NEARBY` times as coarse, however little is seen of the whole of it:
+large faces are seen in places. For each metre beyond, `COARSER` more."""
+NEARBY, COARSER = 1.3, 0.11
+HIGH_LOW: Final = (4.0, -1.0)
+"""Metres: what lies wholly above or below is far as well."""
+RING: Final = 200
+"""Surfaces of more points than this may be rings round everything: their nearest point counts, not their bounds."""
 SEEN: Final = 0.8
 """Share of all surfels that can be seen, as it usually is."""
 RANGE: Final = (0.004, 1.0)
@@ -28,11 +36,34 @@ HALVINGS: Final = 24
 
 def coarseness(assembly: Assembly, mesh: TexturedMesh) -> Float:
     """(M,) factor on the spacing of each part."""
-    seen = np.clip(pixels_per_area(assembly, mesh) ** -LOOKED_AT, *LOOKED_AT_RANGE)
+    finest, coarsest = LOOKED_AT_RANGE
+    most = np.minimum(NEARBY + COARSER * _distance(assembly, mesh), coarsest)
+    seen = np.clip(pixels_per_area(assembly, mesh) ** -LOOKED_AT, finest, most)
     owner = np.repeat([t.object_id for t in assembly.things], [len(t.parts) for t in assembly.things])
     sizes = np.array([max(o.size) for o in assembly.truth.objects] or [1.0])
     fine = np.clip(np.sqrt(sizes[np.maximum(owner, 0)] / SMALL), FINEST, 1.0)
     return np.asarray(seen * np.where(owner >= 0, fine, 1.0))
+
+
+def _distance(assembly: Assembly, mesh: TexturedMesh) -> Float:
+    """(M,) metres from each part to the region that is flown in."""
+    count = len(assembly.parts)
+    part = np.zeros(len(mesh.vertices), np.int64)
+    part[mesh.faces.ravel()] = np.repeat(mesh.face_part, 3)
+    low, high = np.full((count, 3), np.inf), np.full((count, 3), -np.inf)
+    np.minimum.at(low, part, mesh.vertices)
+    np.maximum.at(high, part, mesh.vertices)
+    centre = np.array(assembly.truth.centre)
+    nearest = np.full(count, np.inf)
+    np.minimum.at(nearest, part, _outside(mesh.vertices, mesh.vertices, centre))
+    return np.where(np.bincount(part, minlength=count) > RING, nearest, _outside(low, high, centre))
+
+
+def _outside(low: Float, high: Float, centre: Float) -> Float:
+    """(N,) metres from boxes to the region that is flown in."""
+    off = np.maximum(np.maximum(low - centre - FLOWN, centre - FLOWN - high), 0.0)
+    off[:, 2] = np.maximum(np.maximum(low[:, 2] - HIGH_LOW[0], HIGH_LOW[1] - high[:, 2]), 0.0)
+    return np.asarray(np.linalg.norm(off, axis=1))
 
 
 def spacing_for(assembly: Assembly, mesh: TexturedMesh, factors: Float, count: int) -> float:
