@@ -4,6 +4,10 @@ import os
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("patient", deadline=None)  # machines are slow at times: no test goes by the clock
+settings.load_profile("patient")
 
 
 @pytest.fixture(scope="session")

@@ -401,7 +401,7 @@ class TestCrashes:
 finite = st.floats(-5, 5)
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=50)
 @given(hnp.arrays(float, (8, 3), elements=finite), hnp.arrays(float, 8, elements=finite))
 def test_any_path_is_rebuilt_from_its_actions(positions: np.ndarray, yaws: np.ndarray) -> None:
     actions = np.zeros((8, 4))

@@ -104,7 +104,7 @@ class TestEpisodes:
 
 
 class TestSplits:
-    @settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+    @settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
     @given(
         st.lists(
             st.tuples(KEYS, st.sampled_from(["bakery", "wine bar", "attic"])), min_size=2, max_size=6, unique=True

@@ -41,7 +41,7 @@ def texture(seed: int, size: int = 96) -> np.ndarray:
 
 
 class TestPictures:
-    @settings(max_examples=25, deadline=None)
+    @settings(max_examples=25)
     @given(st.floats(2.0, 30.0), st.integers(0, 99))
     def test_noise_is_measured_in_its_own_grey_levels(self, sigma: float, seed: int) -> None:
         ramp = np.add.outer(np.arange(200.0), np.arange(200.0)) / 2
@@ -49,7 +49,7 @@ class TestPictures:
         assert noise_level(noisy.astype(np.float32)) == pytest.approx(sigma, rel=0.06)
         assert noise_level(ramp.astype(np.float32)) == pytest.approx(0.0, abs=1e-4)
 
-    @settings(max_examples=25, deadline=None)
+    @settings(max_examples=25)
     @given(st.integers(0, 999))
     def test_more_blur_is_more_blur_effect_whatever_the_picture_and_its_contrast(self, seed: int) -> None:
         sharp = texture(seed)

@@ -225,7 +225,7 @@ def said(boxes: BoxMap, yaw: float) -> list[tuple[str, Meaning]]:
     return list(expressions(Resolver(boxes, StartPose((0.0, 0.0, 1.2), yaw)), 0, np.random.default_rng(0)))
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(things, st.floats(-3, 3))
 def test_whatever_the_room_each_prompt_picks_its_target_and_nothing_else(things, yaw) -> None:
     boxes = room_of(things)
@@ -233,7 +233,7 @@ def test_whatever_the_room_each_prompt_picks_its_target_and_nothing_else(things,
         assert set(Resolver(boxes, StartPose((0.0, 0.0, 1.2), yaw)).readings(meaning)) == {0}, (kind, meaning)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(things, st.floats(-3, 3))
 def test_a_twin_in_the_targets_place_silences_everything(things, yaw) -> None:
     boxes = room_of(things)
@@ -241,7 +241,7 @@ def test_a_twin_in_the_targets_place_silences_everything(things, yaw) -> None:
     assert said(BoxMap((*boxes, twin)), yaw) == []
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 @given(st.integers(0, 2**32 - 1))
 def test_turning_room_and_drone_together_changes_no_word(seed) -> None:
     """Places are drawn evenly, not by hypothesis, which likes exact ties: there a rounding error decides."""

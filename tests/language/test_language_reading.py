@@ -177,7 +177,7 @@ rooms = st.lists(
 )
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(rooms, st.floats(-3, 3), st.integers(0, 1000))
 def test_every_sentence_the_generator_writes_is_read_as_its_target(things, yaw, seed) -> None:
     boxes = [

@@ -14,7 +14,7 @@ RESOLUTION = 0.1
 
 
 @given(st.integers(0, 10_000), st.floats(0.4, 2.0))
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 def test_a_way_is_short_enough_in_its_surroundings_exactly_if_it_is_in_the_whole_world(seed, max_distance):
     rng = np.random.default_rng(seed)
     state = np.where(rng.random((24, 24, 6)) < 0.3, OCCUPIED, FREE).astype(np.uint8)

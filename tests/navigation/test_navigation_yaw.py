@@ -19,7 +19,7 @@ def away(a, b):
     return abs(np.angle(np.exp(1j * (a - b))))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1), st.floats(-3.1, 3.1))
 def test_rate_and_acceleration_keep_their_limits_and_the_end_looks_at_the_target(first_yaw, course, bearing):
     end = np.array([4 * np.cos(course), 4 * np.sin(course), 1.0])

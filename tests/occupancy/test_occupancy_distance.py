@@ -27,14 +27,14 @@ def brute_clearance(grid):
 
 
 @given(SEEDS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_clearance_is_the_distance_to_the_nearest_blocked_box(seed):
     grid = random_grid(seed)
     np.testing.assert_allclose(clearance_field(grid), brute_clearance(grid), atol=1e-6)
 
 
 @given(SEEDS, st.floats(0, 0.5))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_inflation_never_frees_and_keeps_its_distance(seed, radius):
     grid = random_grid(seed)
     inflated = inflate(grid, radius)
@@ -63,7 +63,7 @@ def test_clearance_outside_of_the_grid_is_zero():
 
 
 @given(SEEDS, st.floats(0, 6))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_what_is_near_is_what_a_whole_distance_transform_finds_near(seed, distance):
     voxels = np.random.default_rng(seed).random((7, 6, 5)) < 0.05
     voxels[3, 3, 3] = True

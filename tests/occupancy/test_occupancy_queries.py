@@ -29,7 +29,7 @@ def sampled(start, end, n=4000):
 
 
 @given(SEEDS)
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 def test_a_free_segment_has_only_free_points_and_a_blocked_one_a_blocked_point(seed):
     grid, rng = random_grid(seed)
     start, end = inside(grid, rng)
@@ -53,7 +53,7 @@ def test_segments_outside_of_the_grid_and_of_no_length():
 
 
 @given(SEEDS, st.floats(0, 0.3))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_cylinder_is_clear_exactly_if_no_occupied_ball_reaches_into_it(seed, radius):
     grid, rng = random_grid(seed, free=0.99)
     start, end = inside(grid, rng)
@@ -67,7 +67,7 @@ def test_cylinder_is_clear_exactly_if_no_occupied_ball_reaches_into_it(seed, rad
 
 
 @given(SEEDS, st.floats(0, 0.4))
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_sphere_is_clear_exactly_if_no_occupied_box_reaches_into_it(seed, radius):
     grid, rng = random_grid(seed, free=0.99)
     (point,) = inside(grid, rng, 1)
@@ -77,7 +77,7 @@ def test_sphere_is_clear_exactly_if_no_occupied_box_reaches_into_it(seed, radius
 
 
 @given(SEEDS)
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 def test_first_hit_is_the_nearest_occupied_box_along_the_ray(seed):
     grid, rng = random_grid(seed)
     origin = inside(grid, rng, 1)[0] + rng.choice([0, 2.0])  # also from outside, into the grid

@@ -55,7 +55,7 @@ def cost_of(grid, path, price):
 
 
 @given(SEEDS)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_shortest_path_is_as_short_as_dijkstras(seed):
     grid = random_grid(seed)
     a, b = two_free_voxels(grid, seed)
@@ -72,7 +72,7 @@ def test_shortest_path_is_as_short_as_dijkstras(seed):
 
 
 @given(SEEDS)
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_clearance_weighted_path_is_as_cheap_as_dijkstras(seed):
     grid = random_grid(seed, (7, 7, 5), free=0.9)
     a, b = two_free_voxels(grid, seed)
@@ -121,7 +121,7 @@ def test_nearest_free_is_the_point_itself_or_the_nearest_voxel():
 
 
 @given(SEEDS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_smoothing_stays_free_keeps_the_ends_and_never_lengthens(seed):
     grid = random_grid(seed, (12, 12, 6), free=0.9)
     a, b = two_free_voxels(grid, seed)
@@ -147,7 +147,7 @@ def test_smoothing_rounds_a_zigzag():
 
 
 @given(SEEDS, st.floats(0.03, 2))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_resampling_spaces_points_evenly_on_the_path(seed, spacing):
     path = np.random.default_rng(seed).uniform(0, 2, (5, 3))
     points = resample_path(path, spacing)

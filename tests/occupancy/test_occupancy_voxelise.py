@@ -137,7 +137,7 @@ def test_an_empty_world_is_refused():
 
 
 @given(st.integers(0, 2**32 - 1))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_opacity_adds_up_to_the_splats_area(seed):
     rng = np.random.default_rng(seed)
     quaternion = rng.normal(size=4)

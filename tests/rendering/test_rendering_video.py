@@ -27,7 +27,7 @@ def smooth_pictures(count: int, width: int = 64, height: int = 48) -> list[np.nd
     return [np.stack(plane, axis=-1).astype(np.uint8) for plane in planes]
 
 
-@settings(deadline=None, max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=15, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.integers(0, 2**32 - 1), st.integers(1, 7), st.integers(8, 50), st.integers(8, 50))
 def test_any_depth_comes_back_exactly(tmp_path: Path, seed: int, count: int, width: int, height: int):
     frames = np.random.default_rng(seed).integers(0, 2**16, (count, height, width)).astype(np.uint16)
@@ -87,7 +87,7 @@ def test_a_missing_video_is_one_sentence(tmp_path):
         next(read_rgb(tmp_path / "rgb.mp4", 1))
 
 
-@settings(deadline=None, max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=10, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(st.lists(st.integers(0, 10), max_size=5), st.sampled_from([5.0, 10.0, 30.0]))
 def test_any_frame_can_be_read_without_those_before_it(tmp_path: Path, indices: list[int], rate: float):
     frames = smooth_pictures(11)

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -56,7 +57,8 @@ def commit(store: Store, text: str, asset: str = "notes", scene: str = "flat") -
 
 
 @pytest.fixture(params=["disk", "memory"])
-def store(request: pytest.FixtureRequest, tmp_path: Path) -> Store:
+def store(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Store:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))  # where local copies lie, other people's too
     return open_store(str(tmp_path) if request.param == "disk" else f"memory://{tmp_path.name}")
 
 

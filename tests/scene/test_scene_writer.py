@@ -36,7 +36,7 @@ def scenes():
 
 
 @given(KEYS)
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_the_same_key_gives_the_same_description_and_it_survives_its_file_format(key):
     description = writer.describe(key)
     assert description == OfflineSceneWriter().describe(key)

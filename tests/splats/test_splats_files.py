@@ -46,7 +46,7 @@ def ply_text(path, header, body=b""):
 
 
 @given(st.integers(0, 3), st.integers(0, 2**32 - 1))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_a_cloud_survives_its_ply(tmp_path_factory, degree, seed):
     cloud = random_cloud(np.random.default_rng(seed), 20, degree)
     path = tmp_path_factory.mktemp("ply") / "world.ply"

@@ -33,7 +33,7 @@ def furnished_room():
 
 
 @given(st.integers(0, 2**32 - 1), st.floats(0.1, 10))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_turning_and_scaling_a_cloud_turns_and_scales_each_covariance(seed, scale):
     rng = np.random.default_rng(seed)
     cloud, R, t = random_cloud(rng, 10), Rotation.random(random_state=seed).as_matrix(), rng.normal(size=3)
@@ -45,7 +45,7 @@ def test_turning_and_scaling_a_cloud_turns_and_scales_each_covariance(seed, scal
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_a_turned_cloud_looks_the_same_from_a_turned_eye(seed, degree):
     rng = np.random.default_rng(seed)
     cloud, R = random_cloud(rng, 4, degree), Rotation.random(random_state=seed).as_matrix()

@@ -34,7 +34,7 @@ def bounds_of(parts):
 
 
 @given(st.sampled_from(NOUNS), st.integers(0, 2**31 - 1), st.integers(0, 2**31 - 1), st.floats(2.6, 6.0))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_a_thing_fills_its_box_exactly_and_stands_on_the_ground(noun, seed, style, height):
     kind = KINDS[noun]
     size = kind.size(np.random.default_rng(seed), height)
@@ -65,7 +65,7 @@ def test_every_kind_has_parts_of_the_right_proportions_and_a_mesh_and_splats_tha
 
 
 @given(st.sampled_from(NOUNS), st.integers(0, 2**31 - 1))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_the_same_noun_size_finish_and_seed_give_the_same_parts(noun, seed):
     size = KINDS[noun].size(np.random.default_rng(seed), 3.0)
     one, two = (mesh_of(KINDS[noun].build(size, finish_of(noun, seed, seed))) for _ in range(2))
@@ -92,7 +92,7 @@ def test_every_noun_that_the_offline_writer_uses_can_be_built():
 
 
 @given(st.lists(st.floats(0.2, 3.0), min_size=3, max_size=3), st.floats(-3, 3))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_fitting_keeps_normals_square_to_their_surface(size, yaw):
     ball = ellipsoid(paint("red"), (0.5, 0.3, 0.8), (0.4, -1.0, 2.0))
     surfels = surfels_of(fitted([ball], tuple(size))[0], 0.05)
@@ -141,7 +141,7 @@ def test_textures_vary_within_the_range_of_real_surfaces(texture):
 
 
 @given(st.text("ABCDEFGHIJKLMNOPQRSTUVWXYZ 0123456789", min_size=1, max_size=14), st.floats(0.5, 8.0))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_lettering_has_ink_inside_of_its_sign_and_a_margin(words, aspect):
     raster = lettering(words, round(aspect, 3))
     assert raster[:, :1].max() == raster[:, -1:].max() == 0

@@ -40,7 +40,7 @@ def contains(o: PlacedObject, points: np.ndarray, shrink: float) -> np.ndarray:
 
 
 @given(PLACES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_no_two_objects_interpenetrate_and_all_are_in_their_space(description):
     truth = build_truth(description)
     spaces = {s.zone: s for s in truth.spaces}
@@ -60,7 +60,7 @@ def test_no_two_objects_interpenetrate_and_all_are_in_their_space(description):
 
 
 @given(PLACES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_no_object_stands_in_what_belongs_to_the_building(description):
     truth = build_truth(description)
     taken = Occupied()
@@ -70,7 +70,7 @@ def test_no_object_stands_in_what_belongs_to_the_building(description):
 
 
 @given(PLACES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_a_ball_of_one_metre_round_c_is_free(description):
     truth = build_truth(description)
     assert 1.1 <= truth.centre[2] <= 1.7
@@ -80,7 +80,7 @@ def test_a_ball_of_one_metre_round_c_is_free(description):
 
 
 @given(PLACES)
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 def test_every_planned_object_is_placed_or_reported(description):
     truth = build_truth(description)
     wanted, found = Counter(), Counter()
@@ -130,7 +130,7 @@ def test_placements_mean_what_they_say():
 
 
 @given(KEYS)
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=8)
 def test_what_faces_a_thing_looks_at_it_and_what_is_beside_it_is_near(key):
     truth = build_truth(flat(key))
     sofa = next((o for o in truth.objects if o.noun == "sofa"), None)
