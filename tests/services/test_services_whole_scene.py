@@ -16,7 +16,7 @@ from flymirage_core.splats.world import World
 @pytest.fixture(scope="module")
 def grown(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Project, PaperServices, str]]:
     """One scene grown without disturbance, the services that it asked, and what was printed."""
-    with paper_services(offline_originals(60_000), KEYS) as services:
+    with paper_services(offline_originals(120_000), KEYS) as services:
         larger = {"FLYMIRAGE_FRAMES__WIDTH": "160", "FLYMIRAGE_FRAMES__HEIGHT": "120"}
         environment = {**SMALL, **larger, **services.environment(KEYS)}
         project = Project(tmp_path_factory.mktemp("paper"), environment)
