@@ -124,8 +124,8 @@ def solid_faces(mesh: TexturedMesh) -> RayCaster:
 
 
 def opaque_faces(mesh: TexturedMesh) -> RayCaster:
-    """What hides what is behind it: all faces but panes of glass."""
-    return RayCaster(mesh.vertices[mesh.faces[mesh.opacity(np.arange(len(mesh.faces))) > 0.5]])
+    """What hides what is behind it; its faces are those that ``mesh.opaque()`` numbers."""
+    return RayCaster(mesh.vertices[mesh.faces[mesh.opaque()]])
 
 
 def bake(

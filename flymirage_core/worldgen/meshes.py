@@ -46,6 +46,10 @@ class TexturedMesh:
         """(N,) opacity of ``faces`` (N,): less than 1 for glass."""
         return np.array([m.opacity for m in self.materials])[self.face_part[faces]]
 
+    def opaque(self) -> NDArray[np.int64]:
+        """(N,) faces that hide what is behind them: all but panes of glass."""
+        return np.flatnonzero(self.opacity(np.arange(len(self.faces))) > 0.5)
+
     def areas(self) -> Float:
         """(M,) square metres of each part."""
         a, b, c = self.vertices[self.faces].swapaxes(0, 1)

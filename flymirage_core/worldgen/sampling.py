@@ -59,7 +59,7 @@ def lit_world(assembly: Assembly, count: int) -> LitWorld:
     """About ``count`` Gaussians of the assembled world, world frame."""
     mesh = textured_mesh(assembly.parts)
     opaque = opaque_faces(mesh)
-    factors = coarseness(assembly, mesh)
+    factors = coarseness(assembly, mesh, opaque)
     spacing = spacing_for(assembly, mesh, factors, count)
     pieces, leaf = _cut(assembly, factors, spacing, opaque)
     share = sum(map(len, pieces)) / count

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from flymirage_core.worldgen.assembly import Assembly
 from flymirage_core.worldgen.meshes import TexturedMesh
+from flymirage_core.worldgen.rays import RayCaster
 from flymirage_core.worldgen.surfaces import EDGE_CELLS, FINE_JOINTS, Leaves
 from flymirage_core.worldgen.visibility import pixels_per_area
 
@@ -34,11 +35,11 @@ RANGE: Final = (0.004, 1.0)
 HALVINGS: Final = 24
 
 
-def coarseness(assembly: Assembly, mesh: TexturedMesh) -> Float:
-    """(M,) factor on the spacing of each part."""
+def coarseness(assembly: Assembly, mesh: TexturedMesh, opaque: RayCaster) -> Float:
+    """(M,) factor on the spacing of each part; ``opaque`` are the mesh's `opaque_faces`."""
     finest, coarsest = LOOKED_AT_RANGE
     most = np.minimum(NEARBY + COARSER * _distance(assembly, mesh), coarsest)
-    seen = np.clip(pixels_per_area(assembly, mesh) ** -LOOKED_AT, finest, most)
+    seen = np.clip(pixels_per_area(assembly, mesh, opaque) ** -LOOKED_AT, finest, most)
     owner = np.repeat([t.object_id for t in assembly.things], [len(t.parts) for t in assembly.things])
     sizes = np.array([max(o.size) for o in assembly.truth.objects] or [1.0])
     fine = np.clip(np.sqrt(sizes[np.maximum(owner, 0)] / SMALL), FINEST, 1.0)

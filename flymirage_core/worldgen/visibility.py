@@ -28,8 +28,8 @@ TRIES: Final = 200
 """Rounds of looking for free spots, of as many as are wanted each."""
 
 
-def pixels_per_area(assembly: Assembly, mesh: TexturedMesh) -> Float:
-    """(M,) rays that end on each part, per square metre, as a multiple of the mean."""
+def pixels_per_area(assembly: Assembly, mesh: TexturedMesh, opaque: RayCaster) -> Float:
+    """(M,) rays that end on each part, per square metre, as a multiple of the mean; ``opaque``: `opaque_faces`."""
     truth = assembly.truth
     generator = seeded(truth.scene, "what drones see")
     spots = flown_spots(truth, SPOTS, generator)
@@ -37,10 +37,9 @@ def pixels_per_area(assembly: Assembly, mesh: TexturedMesh) -> Float:
     yaw = generator.uniform(0, 2 * np.pi, len(origins))
     rise = np.tan(generator.uniform(-STEEPEST, STEEPEST, len(origins)))
     rays = np.column_stack([np.cos(yaw), np.sin(yaw), rise]) / np.sqrt(1 + rise * rise)[:, None]
-    opaque = np.flatnonzero(mesh.opacity(np.arange(len(mesh.faces))) > 0.5)
-    hit = RayCaster(mesh.vertices[mesh.faces[opaque]]).hits(origins, rays).face
+    hit = opaque.hits(origins, rays).face
     count = len(assembly.parts)
-    hits = np.bincount(mesh.face_part[opaque[hit[hit >= 0]]], minlength=count).astype(float)
+    hits = np.bincount(mesh.face_part[mesh.opaque()[hit[hit >= 0]]], minlength=count).astype(float)
     areas = mesh.areas()
     owner = np.repeat(np.arange(len(assembly.things)), [len(t.parts) for t in assembly.things])
     mean = hits.sum() / areas.sum()

@@ -9,9 +9,9 @@ from flymirage_core.worldgen.lighting import opaque_faces, solid_faces
 from flymirage_core.worldgen.meshes import textured_mesh
 from flymirage_core.worldgen.parts import paint
 from flymirage_core.worldgen.sampling import _covered
-from flymirage_core.worldgen.spacing import coarseness
+from flymirage_core.worldgen.spacing import FLOWN, HIGH_LOW, LOOKED_AT, NEARBY, coarseness
 from flymirage_core.worldgen.surfaces import Part, Sheet, surfels_of
-from flymirage_core.worldgen.visibility import flown_spots
+from flymirage_core.worldgen.visibility import flown_spots, pixels_per_area
 
 BOARD = Sheet((0, 0, 0), (1.6, 0, 0), (0, 0.8, 0))
 
@@ -46,8 +46,19 @@ def test_what_is_far_from_where_drones_fly_is_cut_coarser():
     distance = np.linalg.norm(mesh.vertices[mesh.faces[:, 0]] - assembly.truth.centre, axis=1)  # (F,)
     nearest = np.full(len(assembly.parts), np.inf)
     np.minimum.at(nearest, mesh.face_part, distance)
-    factors = coarseness(assembly, mesh)
+    factors = coarseness(assembly, mesh, opaque_faces(mesh))
     assert np.median(factors[nearest > 40]) > 1.5 * np.median(factors[nearest < 10])
+
+
+def test_what_reaches_near_is_cut_finely_however_little_of_it_is_seen_lest_its_splats_be_fog():
+    assembly = assemble(street())
+    mesh = textured_mesh(assembly.parts)
+    off = np.abs(mesh.vertices - assembly.truth.centre)  # (V, 3) metres
+    near = (off < FLOWN).all(axis=1) & (mesh.vertices[:, 2] < HIGH_LOW[0])
+    parts = np.unique(mesh.face_part[near[mesh.faces].any(axis=1)])
+    opaque = opaque_faces(mesh)
+    assert pixels_per_area(assembly, mesh, opaque)[parts].min() ** -LOOKED_AT > NEARBY
+    assert coarseness(assembly, mesh, opaque)[parts].max() <= NEARBY
 
 
 def test_spots_that_are_flown_through_are_free_and_lie_in_several_rooms():
