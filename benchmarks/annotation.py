@@ -239,7 +239,7 @@ def names_and_colours(
     right = sum(b.label == t.noun for t, b in pairs)
     family = sum(b.label != t.noun and b.label == t.noun.split()[-1] for t, b in pairs)
     generic = sum(b.label == UNKNOWN for _, b in pairs)
-    paint = sum(coloured(colour_of_paint(t.colour), b.colour) is not Truth.NO for t, b in pairs)
+    paint = sum(b.colour != "" and coloured(colour_of_paint(t.colour), b.colour) is not Truth.NO for t, b in pairs)
     colour = sum(share_called(b.colour, surface_colours(t)) >= MIN_COLOUR_SHARE for t, b in pairs)
     counts = {"matched": len(pairs), "noun": right, "family": family, "generic": generic}
     return counts | {"colour": colour, "paint": paint}

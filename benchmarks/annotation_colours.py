@@ -14,7 +14,9 @@ COLOUR_SAMPLES = 500  # of those cells are asked for their colour
 
 
 def share_called(seen: str, colours: Counter[str]) -> float:
-    """The share of ``colours`` for which the ``seen`` word may be used."""
+    """The share of ``colours`` for which the ``seen`` word may be used; no word is right for none."""
+    if not seen:
+        return 0.0
     called = sum(count for name, count in colours.items() if coloured(name, seen) is not Truth.NO)
     return called / max(colours.total(), 1)
 

@@ -15,6 +15,7 @@ from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.colours import to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
 from flymirage_core.annotation.labels import Support, green
+from flymirage_core.annotation.light import Light, seen_colour
 from flymirage_core.annotation.normals import surface_shape
 from flymirage_core.annotation.room_structure import RoomStructure
 
@@ -53,6 +54,7 @@ class Observation:
     box: FittedBox
     support: Support
     views: tuple[int, ...]  # indices of the frames that show most of it, best first
+    colour: str  # by name, in white light
     lab: Float32  # (M, 3) plain CIELAB of its points
     variation: Float32  # (M,) `surface_variation` of its points
     features: Float32  # (FEATURES,)
@@ -63,10 +65,11 @@ def observe(
     support: Support,
     cloud: FusedPoints,
     structure: RoomStructure,
+    light: Light,
     frames: Sequence[Frame],
     views: Sequence[int],
 ) -> Observation:
-    """Measure a box: ``views`` are the frames that show most of it, best first."""
+    """Measure a box: ``light`` is the place's, ``views`` are the frames that show most of it, best first."""
     points = cloud.points[box.members]
     lab = to_lab(cloud.colours[box.members])  # (M, 3)
     normals, variation = surface_shape(points, cloud.to_camera[box.members], NEIGHBOURHOOD, NEIGHBOURS)
@@ -80,7 +83,8 @@ def observe(
             _crops(box, [frames[i] for i in views[:CROPS]]),
         ]
     ).astype(np.float32)
-    return Observation(box, support, tuple(views), lab, variation, features)
+    colour = seen_colour(cloud.colours[box.members], light)
+    return Observation(box, support, tuple(views), colour, lab, variation, features)
 
 
 def mirrored(features: Float32) -> Float32:

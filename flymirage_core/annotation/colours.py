@@ -13,11 +13,13 @@ LIGHTNESS_WEIGHT: Final = 0.35
 REFERENCE_LIGHTNESS: Final = 50.0
 MIN_LIGHTNESS: Final = 25.0
 """Below this, chroma is mostly noise and is not amplified further."""
-GREY_CHROMA: Final = 9.0
-"""Colours with less chroma are named by lightness alone."""
+GREY_CHROMA: Final = 12.0
+"""Colours with less chroma are named by lightness alone: people say "grey" of slate, cement and mushroom."""
+PALE_CHROMA: Final = 9.0
+"""The same of very light and very dark colours, and of light blue ones."""
+NEITHER_PALE_NOR_DEEP: Final = (30.0, 82.0)
 BLUISH: Final = (200.0, 300.0)
-"""Degrees of hue; indoors light is warm, so what still is bluish is blue, from a lower chroma on: """
-BLUISH_CHROMA: Final = 6.0
+"""Degrees of hue of blue, which is noticed where it is `LIGHT`."""
 GREENISH: Final = 105.0
 """Degrees of hue from which pale yellow is a pale green in warm light."""
 PALE: Final = 30.0
@@ -36,6 +38,12 @@ HUES: Final = (
 """Basic names and their hue angles in degrees (atan2(b, a) of CIELAB)."""
 DARK: Final = 30.0
 LIGHT: Final = 72.0
+VIVID: Final = 45.0
+"""Chroma from which dull orange is orange and no brown ..."""
+VIVID_LIGHTNESS: Final = 58.0
+"""... at this lightness; darker ones need more of it (`_is_brown`)."""
+GOLDEN: Final = 42.0
+"""Chroma from which what is between brown and yellow is yellow."""
 
 
 def to_lab(rgb: ArrayLike) -> Float32:
@@ -70,7 +78,7 @@ def colour_name(lab: ArrayLike) -> str:
     lightness, a, b = (float(x) for x in np.asarray(lab, float))
     chroma = float(np.hypot(a, b))
     hue = float(np.degrees(np.arctan2(b, a)) % 360)
-    if chroma < (BLUISH_CHROMA if BLUISH[0] < hue < BLUISH[1] else GREY_CHROMA):
+    if chroma < _least_chroma(lightness, hue):
         return next(name for limit, name in GREYS if lightness < limit or limit > 100)
     name = min(HUES, key=lambda entry: abs((hue - entry[1] + 180) % 360 - 180))[0]
     if name == "yellow" and hue > GREENISH and chroma < PALE:
@@ -78,16 +86,23 @@ def colour_name(lab: ArrayLike) -> str:
     return _shaded(name, hue, lightness, chroma)
 
 
+def _least_chroma(lightness: float, hue: float) -> float:
+    """Chroma from which a colour has a hue that people name."""
+    light_blue = BLUISH[0] < hue < BLUISH[1] and lightness > LIGHT
+    medium = NEITHER_PALE_NOR_DEEP[0] <= lightness <= NEITHER_PALE_NOR_DEEP[1]
+    return GREY_CHROMA if medium and not light_blue else PALE_CHROMA
+
+
 def _shaded(name: str, hue: float, lightness: float, chroma: float) -> str:
     """The hue's everyday name at this lightness and chroma: dull and dark orange is brown, pale yellow is beige."""
     warm = 25 < hue < 105 and name != "green"
     if warm and lightness >= LIGHT and chroma < 30:
-        return "beige" if chroma > 1.4 * GREY_CHROMA or lightness < 88 else "cream"
+        return "beige" if chroma > 12.6 or lightness < 88 else "cream"
     if name == "yellow" and lightness < 60:
         return _dark_yellow(hue, lightness, chroma)
-    if warm and lightness < 62 and chroma < 55 and not (name == "red" and chroma > 32):
+    if warm and _is_brown(hue, lightness, chroma):
         return "dark brown" if lightness < 32 else "brown"
-    if warm and chroma < 35 and name != "red":
+    if warm and chroma < GOLDEN and name != "red":
         return "light brown"
     if name == "pink" and lightness < 45:
         return "dark red" if hue > 354 or hue < 180 else "purple"
@@ -100,7 +115,13 @@ def _shaded(name: str, hue: float, lightness: float, chroma: float) -> str:
     return name
 
 
+def _is_brown(hue: float, lightness: float, chroma: float) -> bool:
+    """Of a warm colour. Clay and rust are brown, brick is red; the darker an orange, the more vivid it must be."""
+    vivid = VIVID + 1.5 * max(0.0, VIVID_LIGHTNESS - lightness)
+    return lightness < 62 and chroma < vivid and not (hue < 40 and chroma > 32)
+
+
 def _dark_yellow(hue: float, lightness: float, chroma: float) -> str:
     if hue > 98:
         return "olive"
-    return "brown" if chroma < 38 or lightness < 42 else "dark yellow" if lightness < 50 else "yellow"
+    return "brown" if chroma < GOLDEN or lightness < 42 else "dark yellow" if lightness < 50 else "yellow"

@@ -22,10 +22,11 @@ from flymirage_core.annotation.box_fitting import (
 )
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.annotation.carving import Detections, detections, solid
-from flymirage_core.annotation.colours import colour_name, colour_step, shading_free, to_lab
+from flymirage_core.annotation.colours import colour_step, shading_free, to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import Support
+from flymirage_core.annotation.light import light_of
 from flymirage_core.annotation.merging import merge_parts
 from flymirage_core.annotation.naming import Name, is_believed, named
 from flymirage_core.annotation.normals import surface_normals
@@ -75,7 +76,7 @@ FULL_EVIDENCE: Final = 12
 class EmbeddedAnnotator:
     """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
 
-    version = "4"
+    version = "5"
 
     def __init__(self, settings: AnnotationSettings, detector: YoloxDetector | None = None) -> None:
         self.settings = settings
@@ -119,10 +120,11 @@ class EmbeddedAnnotator:
         support = detections(cloud.points, boxes, frames, max_distance)
         seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
         rivals = [box for box, _ in seen]
+        light = light_of(cloud.colours)
         observed = []
         for box, found in seen:
             views = best_views(box, found.hits, frames)
-            thing = observe(box, support_of(box, rivals, structure), cloud, structure, frames, views)
+            thing = observe(box, support_of(box, rivals, structure), cloud, structure, light, frames, views)
             observed.append((thing, found))
         return observed
 
@@ -234,7 +236,7 @@ def _object_box(number: int, thing: Observation, name: Name, found: Detections, 
         yaw=box.yaw,
         score=float((name.score + min(1.0, found.views / FULL_EVIDENCE)) / 2),
         label_source=name.source,
-        colour=colour_name(np.median(thing.lab, axis=0)),
+        colour=thing.colour,
         material=name.material,
         supporting_frames=found.views,
         nearest_camera_distance=found.nearest,

@@ -7,7 +7,7 @@ from typing import Final
 import numpy as np
 
 from flymirage_core.annotation.boxes import BoxMap
-from flymirage_core.annotation.colours import colour_name, to_lab
+from flymirage_core.annotation.light import Light, light_of, seen_colour
 from flymirage_core.rendering.views import View
 
 PIXEL_STEP: Final = 4
@@ -15,17 +15,24 @@ PIXEL_STEP: Final = 4
 REACH: Final = 6.0
 """Metres; what is farther from the camera shows too little of itself."""
 MIN_PIXELS: Final = 8
+PLACE_STEP: Final = 8
+"""Every eighth of the pixels looked at tells of the place's light."""
 
 
 def with_seen_colours(boxes: BoxMap, views: Iterable[View]) -> BoxMap:
-    """The boxes with the median colour of the pixels whose points lie in them; "" where there are too few."""
-    colours: list[list[np.ndarray]] = [[] for _ in boxes]
+    """The boxes with the colour of the pixels whose points lie in them; "" where there are too few."""
+    colours: list[list[np.ndarray]] = [[np.zeros((0, 3))] for _ in boxes]
+    place = [np.zeros((0, 3))]
     for view in views:
         points, rgb = _points(view)
+        place.append(rgb[::PLACE_STEP])
         for found, box in zip(colours, boxes, strict=True):
             if np.linalg.norm(np.subtract(box.centre, view.camera.position)) < REACH:
                 found.append(rgb[box.contains(points)])
-    return BoxMap(tuple(replace(box, colour=_name(found)) for box, found in zip(boxes, colours, strict=True)))
+    light = light_of(np.concatenate(place))
+    return BoxMap(
+        tuple(replace(b, colour=_name(np.concatenate(c), light)) for b, c in zip(boxes, colours, strict=True))
+    )
 
 
 def _points(view: View) -> tuple[np.ndarray, np.ndarray]:
@@ -40,6 +47,5 @@ def _points(view: View) -> tuple[np.ndarray, np.ndarray]:
     return world, view.picture.rgb[::PIXEL_STEP, ::PIXEL_STEP][some]
 
 
-def _name(found: list[np.ndarray]) -> str:
-    pixels = np.concatenate(found) if found else np.zeros((0, 3))
-    return colour_name(np.median(to_lab(pixels), axis=0)) if len(pixels) >= MIN_PIXELS else ""
+def _name(pixels: np.ndarray, light: Light) -> str:
+    return seen_colour(pixels, light) if len(pixels) >= MIN_PIXELS else ""

@@ -25,6 +25,7 @@ def lab(*rgb: int) -> np.ndarray:
         ((200, 30, 35), "red"), ((240, 130, 20), "orange"), ((240, 215, 40), "yellow"), ((50, 150, 60), "green"),
         ((25, 70, 30), "dark green"), ((40, 80, 180), "blue"), ((20, 30, 80), "dark blue"), ((120, 60, 150), "purple"),
         ((110, 70, 40), "brown"), ((225, 205, 175), "beige"), ((235, 150, 180), "pink"), ((30, 130, 130), "teal"),
+        ((112, 128, 144), "grey"), ((150, 152, 142), "grey"), ((178, 96, 60), "brown"), ((207, 118, 48), "orange"),
     ],
 )  # fmt: skip
 def test_colours_have_their_everyday_names(rgb, name):
