@@ -54,6 +54,7 @@ class Observation:
     box: FittedBox
     support: Support
     views: tuple[int, ...]  # indices of the frames that show most of it, best first
+    points: Float32  # (M, 3) seen of it
     colour: str  # by name, in white light
     lab: Float32  # (M, 3) plain CIELAB of its points
     variation: Float32  # (M,) `surface_variation` of its points
@@ -84,7 +85,7 @@ def observe(
         ]
     ).astype(np.float32)
     colour = seen_colour(cloud.colours[box.members], light)
-    return Observation(box, support, tuple(views), colour, lab, variation, features)
+    return Observation(box, support, tuple(views), points, colour, lab, variation, features)
 
 
 def mirrored(features: Float32) -> Float32:

@@ -33,7 +33,7 @@ from flymirage_core.annotation.normals import surface_normals
 from flymirage_core.annotation.open_air import find_open_air, sees_sky
 from flymirage_core.annotation.parts import PartSet, Surface
 from flymirage_core.annotation.picture_joins import join_pieces
-from flymirage_core.annotation.picture_votes import look_at, votes
+from flymirage_core.annotation.picture_votes import Vote, look_at, visible_windows, votes
 from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.rows import in_row
@@ -43,6 +43,7 @@ from flymirage_core.annotation.segmentation import (
     smoothed_colours,
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
+from flymirage_core.annotation.wall_fronts import join_fronts
 from flymirage_core.annotation.wall_objects import ceiling_objects, wall_objects
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
 from flymirage_core.rendering.views import View
@@ -96,10 +97,12 @@ class EmbeddedAnnotator:
         frames = frames_of(views)
         pictures = look_at(frames, self.detector) if self.detector is not None else []
         found = self.observations(frames, max_distance, pictures)
-        hits = np.array([seen.hits for _, seen in found])  # (B, F)
-        boxes = [thing.box for thing, _ in found]
-        said = votes(boxes, hits, frames, pictures) if pictures else [None] * len(found)
-        names = named([thing for thing, _ in found], said)
+        things = [thing for thing, _ in found]
+        said: list[Vote | None] = [None] * len(things)
+        if pictures:
+            windows = visible_windows([thing.points for thing in things], frames)
+            said = votes([thing.box for thing in things], windows, pictures)
+        names = named(things, said)
         kept = [(t, s, n) for (t, s), n in zip(found, names, strict=True) if is_believed(t.box, n, s)]
         annotator = f"{self.name} {self.version}"
         return BoxMap(tuple(_object_box(k, t, n, s, annotator) for k, (t, s, n) in enumerate(kept)))
@@ -116,7 +119,7 @@ class EmbeddedAnnotator:
         cloud = _solid_cloud(cloud, structure, frames)
         boxes = propose_boxes(cloud, structure, self.settings.voxel)
         if pictures:
-            boxes = join_pieces(boxes, cloud, structure, frames, pictures, max_distance)
+            boxes = join_pieces(boxes, cloud, structure, frames, pictures)
         support = detections(cloud.points, boxes, frames, max_distance)
         seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
         rivals = [box for box, _ in seen]
@@ -152,7 +155,7 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     parts = colour_parts(_surface(cloud[objects], normals, edges, faces, structure, voxel))
     merge_parts(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
-    boxes = [box for box in boxes if is_thing(box, structure)]
+    boxes = join_fronts([box for box in boxes if is_thing(box, structure)], cloud, structure)
     colours = shading_free(to_lab(cloud.colours))
     boxes += wall_objects(cloud.points, colours, structure) + ceiling_objects(cloud.points, colours, structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)

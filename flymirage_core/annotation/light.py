@@ -1,7 +1,7 @@
 """The light that a place is seen in, and which colour a thing seen in it has: in white light, evenly lit.
 
 Pictures darken what is in the shade, exaggerate contrast, and take on the colour of lamp, sun or sky. Nothing here
-knows which lamps there are: the brightest surfaces tell.
+knows which lamps there are: bright surfaces that are nearly grey tell.
 """
 
 from collections import Counter
@@ -17,12 +17,13 @@ Float32 = NDArray[np.float32]
 
 LUMINANCE: Final = np.array([0.2126, 0.7152, 0.0722], np.float32)
 """Of linear sRGB."""
-BRIGHT: Final = 90.0
-"""Percentile of luminance from which surfaces tell the light's colour: a white patch, made of many."""
+BRIGHT: Final = 50.0
+"""Percentile of luminance from which surfaces tell the light's colour ..."""
+GREYISH: Final = 15.0
+"""... the more, the less chroma they have: what has so much counts a third. Walls, ceilings and floors mostly are
+nearly grey."""
 BRIGHTEST: Final = 97.0
 """The percentile that tells how bright the pictures are."""
-CAST_SHARE: Final = 0.5
-"""Of the bright surfaces' cast, that is the light's: the rest is taken for their own colour."""
 WHITE: Final = 0.6
 """Luminance of white surfaces in well exposed pictures ..."""
 EXPOSURE_SHARE: Final = 0.7
@@ -41,7 +42,7 @@ SAMPLES: Final = 500
 
 @dataclass(frozen=True)
 class Light:
-    """What the brightest surfaces of a place say about its light."""
+    """What the surfaces of a place say about its light."""
 
     brightness: float  # luminance, 0..1
     colour: tuple[float, float, float]  # linear RGB, green = 1
@@ -53,14 +54,16 @@ def light_of(rgb: ArrayLike) -> Light:
     if not len(linear):
         return Light(WHITE, (1.0, 1.0, 1.0))
     luminance = linear @ LUMINANCE
-    patch = linear[luminance >= np.percentile(luminance, BRIGHT)].mean(axis=0) + DARKEST
-    red, green, blue = (patch / patch[1]).tolist()
+    chroma = np.linalg.norm(to_lab(rgb)[:, 1:], axis=1)
+    told = (luminance >= np.percentile(luminance, BRIGHT)) & (luminance < GLARE)
+    grey = np.exp(-((chroma / GREYISH) ** 2)) * told @ linear / max(int(told.sum()), 1) + DARKEST  # (3,)
+    red, green, blue = (grey / grey[1]).tolist()
     return Light(float(np.percentile(luminance, BRIGHTEST)), (red, green, blue))
 
 
 def in_white_light(rgb: ArrayLike, light: Light) -> Float32:
     """CIELAB (N, 3) that one thing's colours (N, 3), 0..255, would have in even white light."""
-    balanced = _linear(rgb) / np.array(light.colour, np.float32) ** CAST_SHARE  # (N, 3)
+    balanced = _linear(rgb) / np.array(light.colour, np.float32)  # (N, 3)
     seen = float(np.median(balanced, axis=0) @ LUMINANCE) + DARKEST
     exposure = (WHITE / max(light.brightness, DARKEST)) ** EXPOSURE_SHARE
     bright = balanced * (exposure * seen**CONTRAST / seen)

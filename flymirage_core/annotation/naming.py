@@ -41,6 +41,10 @@ MIN_VIEWS: Final = 4
 """Views that must have seen a thing that nobody has a name for."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
+PILLAR: Final = (2.2, 0.8)
+"""Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post."""
+BEAM_RATIO: Final = 5.0
+"""Length against width from which what hangs and has no name is a part of the ceiling."""
 TELEVISION: Final = "television"
 BUILDING: Final = frozenset({"window"})
 """What has a name, but is no thing."""
@@ -76,8 +80,16 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
     if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
+    if name.noun == UNKNOWN and _is_pillar_or_beam(box):
+        return False
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
     return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
+
+
+def _is_pillar_or_beam(box: FittedBox) -> bool:
+    short, long = sorted(box.size[:2])
+    pillar = box.size[2] > PILLAR[0] and short < PILLAR[1]
+    return pillar or (box.hanging and long > BEAM_RATIO * short)
 
 
 def chosen_name(recognition: Recognition, vote: Vote | None, box: FittedBox) -> Name:

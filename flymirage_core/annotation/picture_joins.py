@@ -5,13 +5,11 @@ from itertools import combinations
 from typing import Final
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flymirage_core.annotation.box_fitting import MAX_WALL_GAP, FittedBox, fit_box
-from flymirage_core.annotation.carving import detections
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
 from flymirage_core.annotation.fusion import yaw_iou
-from flymirage_core.annotation.picture_votes import vote_weights
+from flymirage_core.annotation.picture_votes import MIN_WINDOW_IOU, Overlaps, overlaps, visible_windows
 from flymirage_core.annotation.room_structure import RoomStructure
 from flymirage_core.annotation.yolox import PictureDetection
 
@@ -20,10 +18,12 @@ TOUCH: Final = 0.08
 """Metres between pieces that may be one thing."""
 LARGEST: Final = 3.2
 """Metres of the longest side of what may be one thing."""
-MIN_WEIGHT: Final = 0.8
-"""Votes for the whole, where it and its pieces compete for each picture's windows ..."""
-BETTER: Final = 1.2
-"""... and by so much more than for both pieces together."""
+MIN_WEIGHT: Final = 0.6
+"""Votes for the whole, from which it may be one ..."""
+BETTER: Final = 1.1
+"""... if it fits the same detections so much better than its pieces do."""
+HOSTS: Final = frozenset({"table"})
+"""Nouns whose windows hold what stands on and round the thing too: no reason to join that to it."""
 
 
 def join_pieces(
@@ -32,38 +32,52 @@ def join_pieces(
     structure: RoomStructure,
     frames: Sequence[Frame],
     found: Sequence[Sequence[PictureDetection]],
-    max_distance: float,
 ) -> list[FittedBox]:
     """The boxes, pieces replaced by the whole wherever the detections ``found`` in each frame fit the whole better."""
     boxes = list(boxes)
     for _ in range(MAX_ROUNDS):
         pairs = [(i, j) for i, j in combinations(range(len(boxes)), 2) if _may_be_one(boxes[i], boxes[j])]
-        if not pairs:
-            return boxes
         wholes = [_whole(boxes[i], boxes[j], cloud, structure) for i, j in pairs]
-        shown = detections(cloud.points, boxes, frames, max_distance)
-        hits = np.stack([s.hits for s in shown])  # (B, F)
-        union_hits = np.array([hits[i] + hits[j] for i, j in pairs])
-        weights = vote_weights([*boxes, *wholes], np.concatenate([hits, union_hits]), frames, found)
-        joined = _accepted(weights, pairs, len(boxes))
+        rivals = [*boxes, *wholes]
+        windows = visible_windows([cloud.points[box.members] for box in rivals], frames)
+        seen = overlaps(rivals, windows, found)
+        joined = _accepted([_gain(seen, len(boxes), k, pair) for k, pair in enumerate(pairs)], pairs)
         if not joined:
-            return boxes
+            break
         pieces = {i for k in joined for i in pairs[k]}
         boxes = [box for i, box in enumerate(boxes) if i not in pieces] + [wholes[k] for k in joined]
     return boxes
 
 
-def _accepted(weights: NDArray[np.float64], pairs: Sequence[tuple[int, int]], count: int) -> list[int]:
-    """Numbers of the pairs that become one, the surest first; each piece in one of them at most."""
+def _gain(seen: Overlaps, boxes: int, number: int, pair: tuple[int, int]) -> float:
+    """How much better the whole, ``number`` behind the ``boxes``, fits the detections that are about it; 0 = no vote.
+
+    Those are the detections that fit the whole or one of its pieces, and no other box better.
+    """
+    pieces = seen.ious[list(pair)].max(axis=0)  # (D,)
+    whole = seen.ious[boxes + number]
+    others = np.delete(seen.ious[:boxes], pair, axis=0).max(axis=0, initial=0.0)
+    about = np.maximum(pieces, whole) >= np.maximum(others, MIN_WINDOW_IOU)
+    best = 0.0, ""
+    apart = 0.0
+    for noun in sorted(set(seen.nouns)):
+        mine = about & (np.array(seen.nouns) == noun)
+        best = max(best, (_weight(whole[mine], seen.scores[mine]), noun))
+        apart = max(apart, _weight(pieces[mine], seen.scores[mine]))
+    return best[0] / max(apart, 1e-9) if best[0] >= MIN_WEIGHT and best[1] not in HOSTS else 0.0
+
+
+def _weight(ious: np.ndarray, scores: np.ndarray) -> float:
+    return float((scores * ious)[ious >= MIN_WINDOW_IOU].sum())
+
+
+def _accepted(gains: Sequence[float], pairs: Sequence[tuple[int, int]]) -> list[int]:
+    """Numbers of the pairs that become one, the clearest first; each piece in one of them at most."""
     taken: set[int] = set()
     accepted = []
-    for k in np.argsort(-weights[count:], kind="stable").tolist():
-        i, j = pairs[k]
-        whole = weights[count + k]
-        if whole < MIN_WEIGHT:
-            break
-        if whole > BETTER * (weights[i] + weights[j]) and not taken & {i, j}:
-            taken |= {i, j}
+    for k in sorted(range(len(pairs)), key=lambda k: -gains[k]):
+        if gains[k] > BETTER and not taken & set(pairs[k]):
+            taken |= set(pairs[k])
             accepted.append(k)
     return accepted
 

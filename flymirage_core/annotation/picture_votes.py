@@ -7,15 +7,23 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.annotation.appearance import window_of
 from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.fused_points import Frame
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
 
+Float32 = NDArray[np.float32]
+Float64 = NDArray[np.float64]
+
 MIN_WINDOW_IOU: Final = 0.45
 """Overlap of a detection's window and a box's from which the one is about the other."""
+SURFACE_POINTS: Final = 150
+"""Points of a box, spread over its surface, that are looked for in each view."""
+SURFACE_SLACK: Final = 0.1
+"""Metres between a point and what a view sees there, up to which it sees the point."""
 MIN_SHOWN: Final = 0.2
-"""Least share of a box's points that a view must hit to be asked about it."""
+"""Least share of a box's points that a view must show to be asked about it."""
+OUTLYING: Final = 2.0
+"""Per cent of the points that each side of a window leaves out."""
 MIN_VOTE: Final = 0.8
 """Sum of score x overlap from which a noun is believed ..."""
 MIN_VOTE_SHARE: Final = 0.08
@@ -72,60 +80,73 @@ def look_at(frames: Sequence[Frame], detector: YoloxDetector) -> list[list[Pictu
     return [detector.detect(frame.rgb) if i % step == 0 else [] for i, frame in enumerate(frames)]
 
 
-def votes(
-    boxes: Sequence[FittedBox],
-    hits: NDArray[np.int64],
-    frames: Sequence[Frame],
-    found: Sequence[Sequence[PictureDetection]],
-) -> list[Vote | None]:
-    """For each box what the detections ``found`` in each frame say it is; None where that is nothing clear.
+def visible_windows(surfaces: Sequence[Float32], frames: Sequence[Frame]) -> Float64:
+    """(B, F, 4) left, top, right, bottom in pixels of what each frame shows of each of B surfaces, points (M, 3).
 
-    ``hits`` (B, F): points of each box that each frame shows. A detection votes for the one box whose window it fits
-    best, if that box's size allows its noun.
+    What other things hide is not in the window, as it is not in a detector's; NaN where too little is shown.
     """
-    tallies, asked = _tallies(boxes, hits, frames, found)
-    return [_winner(tally, n) for tally, n in zip(tallies, asked, strict=True)]
+    sampled = [surface[:: max(1, len(surface) // SURFACE_POINTS)] for surface in surfaces]
+    owner = np.repeat(np.arange(len(sampled)), [len(points) for points in sampled])
+    points = np.concatenate([np.zeros((0, 3), np.float32), *sampled])
+    windows = np.full((len(sampled), len(frames), 4), np.nan)
+    for f, frame in enumerate(frames):
+        pixels, depth = frame.camera.project(points)
+        height, width = frame.depth.shape
+        with np.errstate(invalid="ignore"):
+            near = np.flatnonzero((depth > 0) & (pixels >= 0).all(axis=1) & (pixels < (width, height)).all(axis=1))
+        u, v = pixels[near].astype(int).T
+        shown = near[np.abs(frame.depth[v, u] - depth[near]) < SURFACE_SLACK]
+        for b in np.unique(owner[shown]):
+            own = pixels[shown[owner[shown] == b]]
+            if len(own) >= MIN_SHOWN * len(sampled[b]):
+                windows[b, f] = np.percentile(own, (OUTLYING, 100 - OUTLYING), axis=0).ravel()
+    return windows
 
 
-def vote_weights(
-    boxes: Sequence[FittedBox],
-    hits: NDArray[np.int64],
-    frames: Sequence[Frame],
-    found: Sequence[Sequence[PictureDetection]],
-) -> NDArray[np.float64]:
-    """(B,) weight of the noun that most is said for, of each of some rival boxes; arguments as in `votes`."""
-    tallies, _ = _tallies(boxes, hits, frames, found)
-    return np.array([max(tally.values(), default=0.0) for tally in tallies])
+@dataclass(frozen=True, eq=False)
+class Overlaps:
+    """How well each of D believable detections fits each of B boxes."""
+
+    nouns: tuple[str, ...]  # of the detections
+    scores: Float64  # (D,)
+    ious: Float64  # (B, D), 0 where the frame does not show the box or the box's size forbids the noun
 
 
-def _tallies(
-    boxes: Sequence[FittedBox],
-    hits: NDArray[np.int64],
-    frames: Sequence[Frame],
-    found: Sequence[Sequence[PictureDetection]],
-) -> tuple[list[dict[str, float]], list[int]]:
-    """Sum of score x overlap for each noun, and the number of views asked, of each box."""
+def overlaps(boxes: Sequence[FittedBox], windows: Float64, found: Sequence[Sequence[PictureDetection]]) -> Overlaps:
+    """Of the detections ``found`` in each frame with ``windows`` (B, F, 4) of `visible_windows`."""
+    known = [(f, seen) for f, detections in enumerate(found) for seen in detections if seen.label in _KNOWN]
+    frames = np.array([f for f, _ in known], int)
+    detected = np.array([seen.window for _, seen in known]).reshape(-1, 4)  # (D, 4)
+    least, most = np.array([_KNOWN[seen.label][1:] for _, seen in known]).reshape(-1, 2).T
+    longest = np.array([max(box.size) for box in boxes])[:, None]
+    own = windows[:, frames]  # (B, D, 4)
+    low, high = np.maximum(own[..., :2], detected[:, :2]), np.minimum(own[..., 2:], detected[:, 2:])
+    shared = np.clip(high - low, 0, None).prod(axis=-1)
+    both = (own[..., 2:] - own[..., :2]).prod(axis=-1) + (detected[:, 2:] - detected[:, :2]).prod(axis=-1)
+    fits = np.nan_to_num(shared / np.maximum(both - shared, 1e-9))
+    return Overlaps(
+        tuple(_KNOWN[seen.label][0] for _, seen in known),
+        np.array([seen.score for _, seen in known]),
+        np.where((least <= longest) & (longest <= most), fits, 0.0),
+    )
+
+
+def votes(
+    boxes: Sequence[FittedBox], windows: Float64, found: Sequence[Sequence[PictureDetection]]
+) -> list[Vote | None]:
+    """For each box what the detections say it is, arguments as of `overlaps`; None where that is nothing clear.
+
+    A detection votes for the one box whose window it fits best, if that box's size allows its noun.
+    """
+    seen = overlaps(boxes, windows, found)
+    looked = np.array([len(detections) > 0 for detections in found])
+    asked = (~np.isnan(windows[:, looked, 0])).sum(axis=1)
     tallies: list[dict[str, float]] = [{} for _ in boxes]
-    asked = [0] * len(boxes)
-    shown = hits >= np.maximum(MIN_SHOWN * np.array([[len(box.members)] for box in boxes]).reshape(-1, 1), 1)
-    for f, (frame, detections) in enumerate(zip(frames, found, strict=True)):
-        if not detections:
-            continue
-        windows = {b: w for b in np.flatnonzero(shown[:, f]).tolist() if (w := window_of(boxes[b], frame)) is not None}
-        for b in windows:
-            asked[b] += 1
-        for detection in detections:
-            fits = {b: _overlap(detection.window, w) for b, w in windows.items() if _plausible(detection, boxes[b])}
-            b = max(fits, key=lambda k: fits[k], default=-1)
-            if b >= 0 and fits[b] >= MIN_WINDOW_IOU:
-                noun = _KNOWN[detection.label][0]
-                tallies[b][noun] = tallies[b].get(noun, 0.0) + detection.score * fits[b]
-    return tallies, asked
-
-
-def _plausible(detection: PictureDetection, box: FittedBox) -> bool:
-    known = _KNOWN.get(detection.label)
-    return known is not None and known[1] <= max(box.size) <= known[2]
+    for d, noun in enumerate(seen.nouns if len(boxes) else ()):
+        b = int(seen.ious[:, d].argmax())
+        if seen.ious[b, d] >= MIN_WINDOW_IOU:
+            tallies[b][noun] = tallies[b].get(noun, 0.0) + float(seen.scores[d] * seen.ious[b, d])
+    return [_winner(tally, int(n)) for tally, n in zip(tallies, asked, strict=True)]
 
 
 def _winner(tally: dict[str, float], asked: int) -> Vote | None:
@@ -135,12 +156,3 @@ def _winner(tally: dict[str, float], asked: int) -> Vote | None:
     weight = tally[noun]
     believed = weight >= MIN_VOTE and weight >= MIN_VOTE_SHARE * asked and weight >= CLEAR * sum(tally.values())
     return Vote(noun, weight, asked) if believed else None
-
-
-def _overlap(a: Sequence[float], b: Sequence[float]) -> float:
-    """Intersection over union of two windows (left, top, right, bottom)."""
-    width, height = min(a[2], b[2]) - max(a[0], b[0]), min(a[3], b[3]) - max(a[1], b[1])
-    if width <= 0 or height <= 0:
-        return 0.0
-    shared = width * height
-    return shared / ((a[2] - a[0]) * (a[3] - a[1]) + (b[2] - b[0]) * (b[3] - b[1]) - shared)

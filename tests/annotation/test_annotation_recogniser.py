@@ -11,11 +11,13 @@ from hypothesis import strategies as st
 from flymirage_core.annotation.appearance import FEATURES, mirrored, reversed_depth
 from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.carving import Detections
-from flymirage_core.annotation.fused_points import Frame
+from flymirage_core.annotation.fused_points import Frame, FusedPoints
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.naming import Name, agree, chosen_name, is_believed
-from flymirage_core.annotation.picture_votes import Vote, vote_weights, votes
+from flymirage_core.annotation.picture_joins import join_pieces
+from flymirage_core.annotation.picture_votes import Vote, visible_windows, votes
 from flymirage_core.annotation.recogniser import Recogniser, Recognition, trained_recogniser
+from flymirage_core.annotation.room_structure import HeightMap, RoomStructure
 from flymirage_core.annotation.yolox import PictureDetection
 from flymirage_core.rendering.camera import Camera, Intrinsics, look_along
 
@@ -96,38 +98,42 @@ def test_a_kind_of_chair_agrees_with_a_chair():
 INTRINSICS = Intrinsics.from_horizontal_fov(160, 120, math.radians(90))
 
 
-def frame(distance: float) -> Frame:
-    """A view along +y at the origin's height, from so many metres before it."""
+def frame(distance: float, wall: float = 9.0) -> Frame:
+    """A view along +y at the origin's height, from so many metres before it; all is at y = 0 and nothing else shows."""
     camera = Camera(INTRINSICS, look_along([0, -distance, 0], [0, 1, 0]))
-    blank = np.zeros((120, 160), np.float32)
-    return Frame(camera, np.zeros((120, 160, 3), np.uint8), blank, blank)
+    depth = np.full((120, 160), min(distance, wall), np.float32)
+    return Frame(camera, np.zeros((120, 160, 3), np.uint8), depth, depth)
 
 
 def box(x: float, size: tuple[float, float, float] = (0.6, 0.6, 0.9), points: int = 100) -> FittedBox:
     return FittedBox((x, 0.0, 0.0), size, 0.0, np.arange(points))
 
 
-def window(box: FittedBox, frame: Frame) -> tuple[float, float, float, float]:
-    from flymirage_core.annotation.appearance import window_of
-
-    found = window_of(box, frame)
-    assert found is not None
-    return tuple(map(float, found))
+def front(box: FittedBox) -> np.ndarray:
+    """Points (N, 3) of the face in which the box's middle lies."""
+    x, z = np.meshgrid(
+        np.linspace(-0.5, 0.5, 25) * box.size[0] + box.centre[0], np.linspace(-0.5, 0.5, 25) * box.size[2]
+    )
+    return np.stack([x, np.zeros_like(x), z], axis=-1).reshape(-1, 3).astype(np.float32)
 
 
 FRAMES = [frame(2.0), frame(2.2), frame(2.4)]
-SEEN = np.full((1, 3), 100)
+
+
+def windows(*boxes: FittedBox) -> np.ndarray:
+    return visible_windows([front(box) for box in boxes], FRAMES)
 
 
 def found(label: str, of: FittedBox, score: float = 0.8) -> list[list[PictureDetection]]:
-    return [[PictureDetection(label, score, window(of, f))] for f in FRAMES]
+    (seen,) = windows(of)
+    return [[PictureDetection(label, score, tuple(map(float, window)))] for window in seen]
 
 
 def test_views_that_agree_name_a_box():
-    (vote,) = votes([box(0)], SEEN, FRAMES, found("couch", box(0, (1.6, 0.8, 0.8))))[:1]
+    (vote,) = votes([box(0)], windows(box(0)), found("couch", box(0, (1.6, 0.8, 0.8))))
     assert vote is None  # a window that does not fit says nothing
     sofa = box(0, (1.6, 0.8, 0.8))
-    (vote,) = votes([sofa], SEEN, FRAMES, found("couch", sofa))
+    (vote,) = votes([sofa], windows(sofa), found("couch", sofa))
     assert vote is not None
     assert vote.noun == "sofa"
     assert vote.weight == pytest.approx(2.4)
@@ -136,28 +142,65 @@ def test_views_that_agree_name_a_box():
 
 def test_one_doubtful_view_is_not_enough():
     detections = found("chair", box(0), score=0.3)
-    assert votes([box(0)], SEEN, FRAMES, [detections[0], [], []]) == [None]
+    assert votes([box(0)], windows(box(0)), [detections[0], [], []]) == [None]
 
 
 @pytest.mark.parametrize("label", ["person", "umbrella", "cat"])
 def test_what_lives_or_flies_is_not_believed(label):
-    assert votes([box(0)], SEEN, FRAMES, found(label, box(0))) == [None]
+    assert votes([box(0)], windows(box(0)), found(label, box(0))) == [None]
 
 
 def test_a_noun_that_the_size_forbids_is_not_believed():
-    assert votes([box(0)], SEEN, FRAMES, found("bed", box(0))) == [None]
+    assert votes([box(0)], windows(box(0)), found("bed", box(0))) == [None]
 
 
 def test_a_hidden_box_is_not_voted_for():
-    assert votes([box(0)], np.zeros((1, 3), int), FRAMES, found("chair", box(0))) == [None]
+    hidden = visible_windows([front(box(0))], [frame(2.0, wall=1.0)] * 3)
+    assert np.isnan(hidden).all()
+    assert votes([box(0)], hidden, found("chair", box(0))) == [None]
+
+
+def test_what_is_hidden_of_a_thing_is_not_in_its_window():
+    half = frame(2.0)
+    half.depth[60:] = 1.0  # a table before its lower half
+    (whole, upper) = visible_windows([front(box(0))], [frame(2.0), half])[0]
+    assert upper[3] == pytest.approx(60, abs=2)
+    assert upper[:3] == pytest.approx(whole[:3], abs=2)
 
 
 def test_of_rivals_the_one_that_fits_best_gets_the_vote():
-    left, right, both = box(-0.5), box(0.5), box(0, (1.6, 0.6, 0.9), points=200)
-    hits = np.array([[100] * 3, [100] * 3, [200] * 3])
-    weights = vote_weights([left, right, both], hits, FRAMES, found("couch", both))
-    assert weights[2] == pytest.approx(2.4)
-    assert weights[0] == weights[1] == 0
+    left, right, both = box(-0.5), box(0.5), box(0, (1.6, 0.6, 0.9))
+    said = votes([left, right, both], windows(left, right, both), found("couch", both))
+    assert said[0] is said[1] is None
+    assert said[2].weight == pytest.approx(2.4)
+
+
+def points_of(left: FittedBox, right: FittedBox) -> tuple[FusedPoints, list[FittedBox]]:
+    """A cloud of two boxes' fronts, and the boxes made from it."""
+    points = np.concatenate([front(left), front(right)])
+    blank = np.zeros_like(points)
+    cloud = FusedPoints(np.zeros((len(points), 3), int), points, blank, blank - [0, 1, 0], blank[:, 0], blank[:, 0])
+    half = len(points) // 2
+    return cloud, [replace(left, members=np.arange(half)), replace(right, members=np.arange(half, 2 * half))]
+
+
+FLAT = HeightMap(np.zeros(2), np.full((1, 1), -0.45))
+EMPTY = RoomStructure(-0.45, None, 0.0, (), FLAT, FLAT, None)
+
+
+def test_halves_of_a_thing_that_the_detector_sees_whole_become_one():
+    cloud, halves = points_of(box(-0.4, (0.78, 0.6, 0.9)), box(0.4, (0.78, 0.6, 0.9)))
+    sofa = found("couch", box(0, (1.6, 0.6, 0.9)))
+    (whole,) = join_pieces(halves, cloud, EMPTY, FRAMES, sofa)
+    assert whole.size[0] == pytest.approx(1.58, abs=0.05)
+
+
+@pytest.mark.parametrize("label", ["chair", "dining table"])
+def test_two_chairs_and_what_stands_round_a_table_stay_apart(label):
+    cloud, chairs = points_of(box(-0.4, (0.78, 0.6, 0.9)), box(0.4, (0.78, 0.6, 0.9)))
+    each = [a + b for a, b in zip(found("chair", chairs[0]), found("chair", chairs[1]), strict=True)]
+    said = each if label == "chair" else found(label, box(0, (1.6, 0.6, 0.9)))
+    assert len(join_pieces(chairs, cloud, EMPTY, FRAMES, said)) == 2
 
 
 # --- which boxes are believed
@@ -191,6 +234,18 @@ def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
     assert not is_believed(box(0, (0.9, 0.05, 0.6)), name(), seen())
     assert not is_believed(replace(box(0, (0.9, 0.05, 2.5)), on_wall=True), name(), seen())
     assert is_believed(replace(box(0, (0.9, 0.05, 0.6)), on_wall=True), name(), seen())
+
+
+@pytest.mark.parametrize("size", [(0.4, 0.6, 2.4), (0.7, 0.7, 2.3)])
+def test_nameless_pillars_are_dropped_and_named_tall_things_stay(size):
+    assert not is_believed(box(0, size), name(), seen())
+    assert is_believed(box(0, size), name("wardrobe"), seen())
+    assert is_believed(box(0, (1.0, 1.2, 2.4)), name(), seen())
+
+
+def test_nameless_beams_of_the_ceiling_are_dropped_and_hanging_lamps_stay():
+    assert not is_believed(replace(box(0, (0.2, 1.6, 0.5)), hanging=True), name(), seen())
+    assert is_believed(replace(box(0, (0.6, 0.6, 1.2)), hanging=True), name(), seen())
 
 
 def test_a_nameless_thing_needs_several_views_and_a_named_one_does_not():
