@@ -17,7 +17,7 @@ import json
 import resource
 import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import cv2
@@ -32,8 +32,9 @@ from flymirage_core.rendering.cpu import CpuRasterizer
 from flymirage_core.scene.description import SceneDescription
 from flymirage_core.scene.taxonomy import standard_taxonomy
 from flymirage_core.scene.writer import OfflineSceneWriter
-from flymirage_core.settings import Settings
+from flymirage_core.settings import GenerationSettings, Settings
 from flymirage_core.worldgen.assembly import Assembly, assemble
+from flymirage_core.worldgen.fitting import fitted
 from flymirage_core.worldgen.reference import ReferenceTracer
 from flymirage_core.worldgen.sampling import LitWorld, lit_world
 from flymirage_core.worldgen.truth import WorldTruth
@@ -153,6 +154,8 @@ def build(description: SceneDescription, gaussians: int) -> Made:
     began = time.process_time()
     assembly = assemble(description)
     world = lit_world(assembly, gaussians)
+    settings = GenerationSettings(gaussians=gaussians)
+    world = replace(world, cloud=fitted(world, assembly.truth, settings.views))
     seconds = time.process_time() - began
     return Made(assembly, world, seconds, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 

@@ -31,6 +31,13 @@ class GenerationSettings(Section):
 
     gaussians: Count = 600_000
     """About how many Gaussians a generated world has."""
+    fitting_views: NotNegative = 1.0
+    """For each thousand Gaussians, small traced pictures that they are fitted to; 0: none."""
+
+    @property
+    def views(self) -> int:
+        """Pictures that a world is fitted to."""
+        return round(self.fitting_views * self.gaussians / 1000)
 
 
 class CleaningSettings(Section):

@@ -151,13 +151,17 @@ def rasterize(table: SplatTable, camera: Camera, scratch: Scratch) -> FloatPictu
     k = camera.intrinsics
     shape = (k.height, k.width)
     picture = FloatPicture(np.empty((*shape, 3), np.float32), np.empty(shape, np.float32), np.empty(shape, np.float32))
-    rotation = camera.T_camera_world[:3, :3].ravel()
-    pinhole = [k.fx, k.fy, k.cx, k.cy, k.width, k.height]
-    packed = np.concatenate([rotation, camera.position, pinhole]).astype(np.float64)  # (18,)
     kernels.render_frame(
-        table.arrays(), packed, scratch.records, scratch.ids, picture.rgb, picture.depth, picture.alpha
+        table.arrays(), packed(camera), scratch.records, scratch.ids, picture.rgb, picture.depth, picture.alpha
     )
     return picture
+
+
+def packed(camera: Camera) -> NDArray[np.float64]:
+    """The camera (18,) as the kernels read it: R_camera_world by rows, position, fx, fy, cx, cy, width, height."""
+    k = camera.intrinsics
+    rotation = camera.T_camera_world[:3, :3].ravel()
+    return np.concatenate([rotation, camera.position, [k.fx, k.fy, k.cx, k.cy, k.width, k.height]]).astype(np.float64)
 
 
 def compile_kernels() -> None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from flymirage_core.worldgen.bounces import Patches, gathered, hemispheres
@@ -201,22 +202,47 @@ def _from_sun(points: Float, normals: Float, sun: Sun, shadows: RayCaster) -> Fl
 
 
 def _from_lamps(points: Float, normals: Float, lamps: Lamps, shadows: RayCaster) -> Float:
-    offset = lamps.positions - points[:, None]  # (N, L, 3)
-    squared = (offset**2).sum(axis=2)
-    distance = np.sqrt(np.maximum(squared, 1e-9))
-    strength = np.maximum((offset * normals[:, None]).sum(axis=2) / distance, 0.0) / (squared + NEAR_LAMP)  # (N, L)
-    one_sided = np.abs(lamps.normals).sum(axis=1) > 0
-    facing = -(offset * lamps.normals).sum(axis=2) / distance
-    strength *= np.where(one_sided, np.maximum(facing, 0.0), 1.0)
-    power = strength * lamps.intensities.mean(axis=1)
-    share = power / np.maximum(power.sum(axis=1, keepdims=True), 1e-12)
-    visible = np.zeros_like(strength)
-    strong = share > STRONG
+    powers = lamps.intensities.mean(axis=1)
+    strength, rays = _lamp_strengths(points, normals, lamps.positions, lamps.normals, powers)  # (N, L) both
+    strong = np.nonzero(rays == 2)
+    visible = np.zeros(len(strong[0]))
     for a, b in CORNERS:
-        visible[strong] += _sees(points, normals, np.nonzero(strong), lamps, (a, b), shadows) / len(CORNERS)
-    weak = (share > FAINT) & ~strong
-    visible[weak] = _sees(points, normals, np.nonzero(weak), lamps, (0.0, 0.0), shadows)
-    return np.asarray((strength * visible) @ lamps.intensities)
+        visible += _sees(points, normals, strong, lamps, (a, b), shadows) / len(CORNERS)
+    strength[strong] *= visible
+    weak = np.nonzero(rays == 1)
+    strength[weak] *= _sees(points, normals, weak, lamps, (0.0, 0.0), shadows)
+    strength[rays == 0] = 0.0
+    return np.asarray(strength @ lamps.intensities)
+
+
+@njit(cache=True, nogil=True)
+def _lamp_strengths(
+    points: Float, normals: Float, positions: Float, lamp_normals: Float, powers: Float
+) -> tuple[Float, NDArray[np.uint8]]:
+    """What each lamp would give each spot if nothing were in the way, as a factor on its intensity, (N, L).
+
+    And the shadow rays that it is worth, (N, L): 0, less than `FAINT`; 1; or 2, `STRONG`: several.
+    """
+    strength = np.zeros((len(points), len(positions)))
+    rays = np.zeros(strength.shape, np.uint8)
+    for i in range(len(points)):
+        total = 0.0
+        for j in range(len(positions)):
+            x = positions[j, 0] - points[i, 0]
+            y = positions[j, 1] - points[i, 1]
+            z = positions[j, 2] - points[i, 2]
+            squared = x * x + y * y + z * z
+            distance = np.sqrt(max(squared, 1e-9))
+            cosine = (x * normals[i, 0] + y * normals[i, 1] + z * normals[i, 2]) / distance
+            facing = -(x * lamp_normals[j, 0] + y * lamp_normals[j, 1] + z * lamp_normals[j, 2]) / distance
+            if not lamp_normals[j].any():  # shines all round
+                facing = 1.0
+            strength[i, j] = max(cosine, 0.0) * max(facing, 0.0) / (squared + NEAR_LAMP)
+            total += strength[i, j] * powers[j]
+        for j in range(len(positions)):
+            share = strength[i, j] * powers[j] / max(total, 1e-12)
+            rays[i, j] = 2 if share > STRONG else 1 if share > FAINT else 0
+    return strength, rays
 
 
 def _sees(

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import trimesh
@@ -32,11 +33,18 @@ class TexturedMesh:
         corners = self.faces[faces]  # (N, 3)
         uv, local = ((weights[..., None] * a[corners]).sum(axis=1) for a in (self.uv, self.local))
         colours = np.zeros((len(faces), 3))
-        for chosen in _groups(self.face_part[faces], self.extent[corners[:, 0]]):
+        for chosen in _groups(self.patches[faces]):
             material = self.materials[int(self.face_part[faces[chosen[0]]])]
             u, v = self.extent[corners[chosen[0], 0]]
             colours[chosen] = albedo(material, uv[chosen], (float(u), float(v)), local[chosen])
         return colours
+
+    @cached_property
+    def patches(self) -> NDArray[np.integer]:
+        """(F,) number of the patch that each face is of: those of one part and extent count as one."""
+        rows = np.column_stack([self.face_part, self.extent[self.faces[:, 0]]])
+        number = np.unique(rows, axis=0, return_inverse=True)[1].ravel()
+        return number.astype(np.min_scalar_type(int(number.max(initial=0))))  # 16 bits are sorted by counting
 
     def emission(self, faces: NDArray[np.int64]) -> Float:
         """(N,) radiance that ``faces`` (N,) give off, as a multiple of their albedo."""
@@ -162,8 +170,7 @@ def _leaf_piece(leaves: Leaves) -> Piece:
     return points, faces, np.zeros((len(points), 2)), (1.0, 1.0)
 
 
-def _groups(part: NDArray[np.int64], extent: Float) -> list[NDArray[np.intp]]:
-    """Indices of rows that share a part and a patch size."""
-    _, group = np.unique(np.column_stack([part, extent]), axis=0, return_inverse=True)
-    order = np.argsort(group, kind="stable")
-    return np.split(order, np.flatnonzero(np.diff(group.ravel()[order])) + 1) if len(order) else []
+def _groups(patches: NDArray[np.integer]) -> list[NDArray[np.intp]]:
+    """Indices of the rows of each patch, of ``patches`` (N,)."""
+    order = np.argsort(patches, kind="stable")
+    return np.split(order, np.flatnonzero(np.diff(patches[order])) + 1) if len(order) else []

@@ -12,10 +12,11 @@ from flymirage_core.settings import GenerationSettings
 from flymirage_core.splats.collider import to_glb
 from flymirage_core.splats.world import World
 from flymirage_core.worldgen.assembly import assemble, build_truth
+from flymirage_core.worldgen.fitting import fitted
 from flymirage_core.worldgen.sampling import lit_world
 from flymirage_core.worldgen.viewpoints import best_view, panorama
 
-NAME = "offline 5"
+NAME = "offline 6"
 
 
 class OfflineWorldModel:
@@ -28,14 +29,15 @@ class OfflineWorldModel:
 
     def build(self, description: SceneDescription, picture: ScenePicture | None = None) -> World:
         """A world of about ``settings.gaussians`` Gaussians; the main space's middle is the origin, c free by 1 m."""
-        return _built(description, self.settings.gaussians)
+        return _built(description, self.settings.gaussians, self.settings.views)
 
 
 @lru_cache(maxsize=1)  # the painter has just built the world that the world model is asked for next
-def _built(description: SceneDescription, count: int) -> World:
+def _built(description: SceneDescription, count: int, views: int) -> World:
     assembly = assemble(description)
     lit = lit_world(assembly, count)
     truth = assembly.truth
+    cloud = fitted(lit, truth, views)
     notes = {
         "source": f"world model {NAME}",
         "scale": 1.0,
@@ -44,9 +46,8 @@ def _built(description: SceneDescription, count: int) -> World:
         "objects_unplaced": sum(u.count for u in truth.unplaced),
     }
     collider = to_glb(lit.mesh.vertices, lit.mesh.faces)
-    return World(
-        lit.cloud, np.array(truth.centre), notes, collider, panorama(lit.cloud, np.array(truth.centre), CpuRasterizer())
-    )
+    centre = np.array(truth.centre)
+    return World(cloud, centre, notes, collider, panorama(cloud, centre, CpuRasterizer()))
 
 
 class OfflinePainter:

@@ -61,7 +61,7 @@ def flown_spots(truth: WorldTruth, count: int, generator: np.random.Generator) -
     for _ in range(TRIES):
         space = generator.choice(len(room), count, p=room / room.sum())
         spots = generator.uniform(low[space], high[space])
-        free = truth.is_free((spots[:, None] + offsets).reshape(-1, 3)).reshape(count, -1).all(axis=1)
+        free = truth.is_free((spots[:, None] + offsets).reshape(-1, 3)).reshape(-1, len(offsets)).all(axis=1)
         found = np.concatenate([found, spots[free]])
         if len(found) >= count:
             return found[:count]
