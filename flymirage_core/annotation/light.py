@@ -24,7 +24,7 @@ GREYISH: Final = 15.0
 nearly grey."""
 BRIGHTEST: Final = 97.0
 """The percentile that tells how bright the pictures are."""
-WHITE: Final = 0.6
+WHITE: Final = 0.65
 """Luminance of white surfaces in well exposed pictures ..."""
 EXPOSURE_SHARE: Final = 0.7
 """... and by this power of the ratio to it darker pictures are brightened."""
@@ -38,6 +38,8 @@ MIN_PLAIN: Final = 0.25
 """... if at least this share of it does show one."""
 SAMPLES: Final = 500
 """Points of a thing that are asked for their colour."""
+PLACE_SAMPLES: Final = 100_000
+"""Points of a place that are."""
 
 
 @dataclass(frozen=True)
@@ -50,11 +52,13 @@ class Light:
 
 def light_of(rgb: ArrayLike) -> Light:
     """The light of a place of which ``rgb`` (N, 3), 0..255, are surfaces' colours."""
-    linear = _linear(rgb)
-    if not len(linear):
+    colours = np.asarray(rgb, np.float32).reshape(-1, 3)
+    if not len(colours):
         return Light(WHITE, (1.0, 1.0, 1.0))
+    colours = colours[:: max(1, len(colours) // PLACE_SAMPLES)]
+    linear = _linear(colours)
     luminance = linear @ LUMINANCE
-    chroma = np.linalg.norm(to_lab(rgb)[:, 1:], axis=1)
+    chroma = np.linalg.norm(to_lab(colours)[:, 1:], axis=1)
     told = (luminance >= np.percentile(luminance, BRIGHT)) & (luminance < GLARE)
     grey = np.exp(-((chroma / GREYISH) ** 2)) * told @ linear / max(int(told.sum()), 1) + DARKEST  # (3,)
     red, green, blue = (grey / grey[1]).tolist()

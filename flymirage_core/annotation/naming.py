@@ -43,7 +43,7 @@ PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 PILLAR: Final = (2.2, 0.8)
 """Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post."""
-BEAM_RATIO: Final = 5.0
+BEAM_RATIO: Final = 4.0
 """Length against width from which what hangs and has no name is a part of the ceiling."""
 TELEVISION: Final = "television"
 BUILDING: Final = frozenset({"window"})
