@@ -35,6 +35,8 @@ CROP_MARGIN: Final = 0.06
 NEIGHBOURHOOD: Final = 0.09
 """Metres within which a surface's direction and roughness are judged."""
 NEIGHBOURS: Final = 16
+AT_WALL: Final = 0.3
+"""Metres to a wall's plane within which a surface is at the wall."""
 FAR: Final = 3.0
 """Metres; gaps to walls and ceiling are not told apart beyond this."""
 
@@ -55,6 +57,7 @@ class Observation:
     support: Support
     views: tuple[int, ...]  # indices of the frames that show most of it, best first
     points: Float32  # (M, 3) seen of it
+    relief: float  # metres that they spread across the wall which they are at; inf away from walls
     colour: str  # by name, in white light
     lab: Float32  # (M, 3) plain CIELAB of its points
     variation: Float32  # (M,) `surface_variation` of its points
@@ -85,7 +88,9 @@ def observe(
         ]
     ).astype(np.float32)
     colour = seen_colour(cloud.colours[box.members], light)
-    return Observation(box, support, tuple(views), points, colour, lab, variation, features)
+    return Observation(
+        box, support, tuple(views), points, _relief(box, points, structure), colour, lab, variation, features
+    )
 
 
 def mirrored(features: Float32) -> Float32:
@@ -107,6 +112,13 @@ def reversed_depth(features: Float32) -> Float32:
     grid = out[:, :_SHAPE].reshape(-1, *SHAPE_CELLS)
     grid[:] = grid[:, :, ::-1].copy()
     return out
+
+
+def _relief(box: FittedBox, points: Float32, structure: RoomStructure) -> float:
+    across = [wall.distance(points) for wall in structure.walls_at(box.centre)]
+    return min(
+        (float(np.ptp(np.percentile(d, (5, 95)))) for d in across if abs(np.median(d)) < AT_WALL), default=np.inf
+    )
 
 
 def _in_box(box: FittedBox, points: Float32) -> tuple[Float32, Float32]:

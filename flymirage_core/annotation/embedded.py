@@ -28,7 +28,7 @@ from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import Support
 from flymirage_core.annotation.light import light_of
 from flymirage_core.annotation.merging import merge_parts
-from flymirage_core.annotation.naming import Name, is_believed, named
+from flymirage_core.annotation.naming import Name, is_bare_front, is_believed, named
 from flymirage_core.annotation.normals import surface_normals
 from flymirage_core.annotation.open_air import find_open_air, sees_sky
 from flymirage_core.annotation.parts import PartSet, Surface
@@ -43,7 +43,6 @@ from flymirage_core.annotation.segmentation import (
     smoothed_colours,
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
-from flymirage_core.annotation.wall_fronts import join_fronts
 from flymirage_core.annotation.wall_objects import ceiling_objects, wall_objects
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
 from flymirage_core.rendering.views import View
@@ -103,7 +102,11 @@ class EmbeddedAnnotator:
             windows = visible_windows([thing.points for thing in things], frames)
             said = votes([thing.box for thing in things], windows, pictures)
         names = named(things, said)
-        kept = [(t, s, n) for (t, s), n in zip(found, names, strict=True) if is_believed(t.box, n, s)]
+        kept = [
+            (t, s, n)
+            for (t, s), n in zip(found, names, strict=True)
+            if is_believed(t.box, n, s) and not is_bare_front(t, n)
+        ]
         annotator = f"{self.name} {self.version}"
         return BoxMap(tuple(_object_box(k, t, n, s, annotator) for k, (t, s, n) in enumerate(kept)))
 
@@ -155,7 +158,7 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     parts = colour_parts(_surface(cloud[objects], normals, edges, faces, structure, voxel))
     merge_parts(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
-    boxes = join_fronts([box for box in boxes if is_thing(box, structure)], cloud, structure)
+    boxes = [box for box in boxes if is_thing(box, structure)]
     colours = shading_free(to_lab(cloud.colours))
     boxes += wall_objects(cloud.points, colours, structure) + ceiling_objects(cloud.points, colours, structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)

@@ -12,7 +12,7 @@ import numpy as np
 from flymirage_core.annotation.appearance import Observation
 from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.carving import Detections
-from flymirage_core.annotation.labels import UNKNOWN
+from flymirage_core.annotation.labels import UNKNOWN, Support
 from flymirage_core.annotation.picture_votes import Vote
 from flymirage_core.annotation.recogniser import Recognition, trained_recogniser
 
@@ -45,6 +45,9 @@ PILLAR: Final = (2.2, 0.8)
 """Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post."""
 BEAM_RATIO: Final = 4.0
 """Length against width from which what hangs and has no name is a part of the ceiling."""
+BARE_FRONT: Final = (0.05, 0.35)
+"""Metres of relief up to which only a face flush with its wall was seen of a thing above the floor, and the left-over
+probability from which that is a panel of the wall, a headboard behind pillows, if nobody has a name for it."""
 TELEVISION: Final = "television"
 BUILDING: Final = frozenset({"window"})
 """What has a name, but is no thing."""
@@ -84,6 +87,12 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
         return False
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
     return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
+
+
+def is_bare_front(thing: Observation, name: Name) -> bool:
+    """Whether nothing but a flat piece of a wall, or of what covers it, was seen."""
+    built = thing.support is not Support.FLOOR and not thing.box.on_wall
+    return name.noun == UNKNOWN and built and thing.relief < BARE_FRONT[0] and name.left_over >= BARE_FRONT[1]
 
 
 def _is_pillar_or_beam(box: FittedBox) -> bool:

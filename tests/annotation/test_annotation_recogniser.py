@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from flymirage_core.annotation.appearance import FEATURES, mirrored, reversed_depth
+from flymirage_core.annotation.appearance import FEATURES, Observation, mirrored, reversed_depth
 from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.carving import Detections
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
-from flymirage_core.annotation.labels import UNKNOWN
-from flymirage_core.annotation.naming import Name, agree, chosen_name, is_believed
+from flymirage_core.annotation.labels import UNKNOWN, Support
+from flymirage_core.annotation.naming import Name, agree, chosen_name, is_bare_front, is_believed
 from flymirage_core.annotation.picture_joins import join_pieces
 from flymirage_core.annotation.picture_votes import Vote, visible_windows, votes
 from flymirage_core.annotation.recogniser import Recogniser, Recognition, trained_recogniser
@@ -241,6 +241,19 @@ def test_nameless_pillars_are_dropped_and_named_tall_things_stay(size):
     assert not is_believed(box(0, size), name(), seen())
     assert is_believed(box(0, size), name("wardrobe"), seen())
     assert is_believed(box(0, (1.0, 1.2, 2.4)), name(), seen())
+
+
+def observed(relief: float, support: Support = Support.SURFACE) -> Observation:
+    nothing = np.zeros(0, np.float32)
+    return Observation(box(0), support, (), nothing, relief, "grey", nothing, nothing, nothing)
+
+
+def test_of_a_nameless_thing_at_a_wall_more_than_a_flat_face_must_be_seen():
+    assert is_bare_front(observed(0.03), name(left_over=0.4))
+    assert not is_bare_front(observed(0.2), name(left_over=0.4))
+    assert not is_bare_front(observed(0.03, Support.FLOOR), name(left_over=0.4))
+    assert not is_bare_front(observed(0.03), name("wall shelf", left_over=0.4))
+    assert not is_bare_front(observed(0.03), name(left_over=0.1))
 
 
 def test_nameless_beams_of_the_ceiling_are_dropped_and_hanging_lamps_stay():
