@@ -42,6 +42,8 @@ VIVID: Final = 45.0
 """Chroma from which dull orange is orange and no brown ..."""
 VIVID_LIGHTNESS: Final = 58.0
 """... at this lightness; darker ones need more of it (`_is_brown`)."""
+PALE_BROWN: Final = (54.0, 20.0)
+"""Lightness from which a brown of less chroma than this is light brown."""
 GOLDEN: Final = 42.0
 """Chroma from which what is between brown and yellow is yellow."""
 
@@ -118,7 +120,8 @@ def _shaded(name: str, hue: float, lightness: float, chroma: float) -> str:
 def _is_brown(hue: float, lightness: float, chroma: float) -> bool:
     """Of a warm colour. Clay and rust are brown, brick is red; the darker an orange, the more vivid it must be."""
     vivid = VIVID + 1.5 * max(0.0, VIVID_LIGHTNESS - lightness)
-    return lightness < 62 and chroma < vivid and not (hue < 40 and chroma > 32)
+    dark = lightness < (PALE_BROWN[0] if chroma < PALE_BROWN[1] else 62)
+    return dark and chroma < vivid and not (hue < 40 and chroma > 32)
 
 
 def _dark_yellow(hue: float, lightness: float, chroma: float) -> str:
