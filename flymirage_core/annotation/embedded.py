@@ -148,9 +148,11 @@ class EmbeddedAnnotator:
 
 def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
     """Boxes of the objects in a cloud of solid points, floor to ceiling and then by place."""
-    objects = np.flatnonzero(~structure.contains(cloud.points))
+    flat = structure.contains(cloud.points)
+    objects = np.flatnonzero(~flat)
     normals = surface_normals(cloud.points[objects], cloud.to_camera[objects], NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS)
     bulk = ~structure.is_wall_skin(cloud.points[objects], normals)
+    flat[objects[~bulk]] = True
     objects = objects[bulk]
     normals = normals[bulk]
     edges = neighbour_edges(cloud.voxels[objects])
@@ -160,7 +162,7 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
     boxes = [box for box in boxes if is_thing(box, structure)]
     colours = shading_free(to_lab(cloud.colours))
-    boxes += wall_objects(cloud.points, colours, structure) + ceiling_objects(cloud.points, colours, structure)
+    boxes += wall_objects(cloud.points, colours, flat, structure) + ceiling_objects(cloud.points, colours, structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)
     return sorted(boxes, key=lambda b: (round(b.bottom, 2), b.centre))
 

@@ -39,7 +39,7 @@ UPWARDS: Final = 0.5
 """Sine of the elevation from which a ray looks up: at the sky, or at a ceiling."""
 SKY_DISTANCE: Final = 25.0
 """Metres along such a ray; no ceiling is so far away."""
-MIN_SKY: Final = 0.1
+MIN_SKY: Final = 0.04
 """Share of sky among all that is seen upwards, from which a place is open."""
 RAY_STEP: Final = 8
 """Every eighth pixel, both ways, is asked."""

@@ -111,9 +111,13 @@ class Wall:
 
     def contains(self, points: Float32 | Float64) -> Bool:
         """(N,) whether points (N, 3) belong to the wall's slab."""
+        return np.asarray(self.spans(points) & (self.distance(points) < self.clearance))
+
+    def spans(self, points: Float32 | Float64) -> Bool:
+        """(N,) whether points (N, 3) lie in the wall or before it within its skin."""
         along = points[:, :2] @ self.direction
         distance = self.distance(points)
-        near = (distance < self.clearance) & (distance > -self.thickness)
+        near = (distance < self.skin) & (distance > -self.thickness)
         return np.asarray(near & (along > self.start - WALL_END) & (along < self.end + WALL_END))
 
 
@@ -161,13 +165,7 @@ class RoomStructure:
         """(N,) whether points (N, 3) with ``normals`` (N, 3) lie just before a wall and face as it does: its noise."""
         skin = np.zeros(len(points), bool)
         for wall in self.walls:
-            along = points[:, :2] @ wall.direction
-            near = (
-                (np.abs(wall.distance(points)) < wall.skin)
-                & (along > wall.start - WALL_END)
-                & (along < wall.end + WALL_END)
-            )
-            skin |= near & (normals[:, :2] @ wall.normal > ALONG_WALL)
+            skin |= wall.spans(points) & (normals[:, :2] @ wall.normal > ALONG_WALL)
         return skin
 
     def walls_at(self, centre: tuple[float, float, float]) -> list[Wall]:

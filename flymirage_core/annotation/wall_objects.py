@@ -1,4 +1,4 @@
-"""Flat things on walls (pictures, mirrors, screens, boards) and ceilings (lights), found by colour in a raster."""
+"""Flat things on walls (pictures, mirrors, screens, boards) and ceilings (lights), found in a raster by colour and relief."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -15,27 +15,30 @@ from flymirage_core.annotation.room_structure import RoomStructure, Wall
 
 Float32 = NDArray[np.float32]
 Float64 = NDArray[np.float64]
+Bool = NDArray[np.bool_]
 
 CELL: Final = 0.04
 """Metres; cells of a wall's raster."""
 MAX_DEPTH: Final = 0.07
-"""Metres before or behind the wall's plane; what stands out further is a thing of its own."""
+"""Metres behind the wall's plane, or below the ceiling's."""
 MAX_CEILING_DEPTH: Final = 0.12
 """Metres below the ceiling; what reaches lower hangs."""
 MAX_LIGHT: Final = 2.0
 MIN_POINTS: Final = 200
 """Of a wall or ceiling, for it to be looked at."""
 MAX_PAINT_STEP: Final = 3.0
-"""Colour step between neighbouring cells up to which both are bare wall."""
+"""Colour step between neighbouring cells up to which both are bare wall ..."""
+MAX_RELIEF: Final = 0.012
+"""... if one is no more metres before the other: a white board on a white wall is not."""
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
 MAX_PATTERN: Final = 3.0
-"""Colour step from the usual colour of a stretch without such a region, over the median of all: bricks, wallpaper."""
+"""Step from the usual colour and depth of a stretch without such a region, over the median of all: bricks, wallpaper."""
 FRONT_PERCENTILE: Final = 60
 MIN_AREA: Final = 0.06
 """Square metres."""
 MIN_SIDE: Final = 0.15
-MAX_SHORT_SIDE: Final = 1.6
+MAX_SHORT_SIDE: Final = 2.0
 """Metres; what is larger both ways is a part of the wall."""
 MIN_FILL: Final = 0.55
 """Least share of the bounding rectangle: flat things are rectangles or discs, shadows are not."""
@@ -48,14 +51,15 @@ MAX_BOTTOM_OUTDOORS: Final = 2.6
 MIN_THICKNESS: Final = 0.03
 
 
-def wall_objects(points: Float32, colours: Float32, structure: RoomStructure) -> list[FittedBox]:
-    """Boxes of what differs in colour from the wall it lies on.
+def wall_objects(points: Float32, colours: Float32, flat: Bool, structure: RoomStructure) -> list[FittedBox]:
+    """Boxes of what differs in colour or depth from the wall it lies on.
 
-    ``points``: (N, 3) world, metres, structure included. ``colours``: (N, 3) shading-free Lab.
+    ``points``: (N, 3) world, metres. ``colours``: (N, 3) shading-free Lab. ``flat``: (N,) which are the building, or
+    lie close before a wall and face as it does.
     """
     found = []
     for wall in structure.walls:
-        members = np.flatnonzero(wall.contains(points) & (np.abs(wall.distance(points)) < MAX_DEPTH))
+        members = np.flatnonzero(flat & wall.spans(points) & (wall.distance(points) > -MAX_DEPTH))
         if len(members) >= MIN_POINTS:
             found += _on_wall(wall, members, points[members], colours[members], structure.floor)
     if structure.ceiling_map is None:
@@ -75,7 +79,7 @@ def ceiling_objects(points: Float32, colours: Float32, structure: RoomStructure)
     axes = np.array([[c, s], [-s, c]])
     along, across = (points[members, :2] @ axis for axis in axes)
     boxes = []
-    for mine, (x, y), (w, h) in _flat_things(along, across, colours[members]):
+    for mine, (x, y), (w, h) in _flat_things(along, across, depth[members], colours[members]):
         if min(w, h) < MIN_SIDE or max(w, h) > MAX_LIGHT:
             continue
         xy = np.array([x + w / 2, y + h / 2]) @ axes
@@ -90,7 +94,7 @@ def ceiling_objects(points: Float32, colours: Float32, structure: RoomStructure)
 def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Float32, floor: float) -> list[FittedBox]:
     along, depth = points[:, :2] @ wall.direction, wall.distance(points)
     boxes = []
-    for mine, (x, bottom), (w, h) in _flat_things(along, points[:, 2], colours):
+    for mine, (x, bottom), (w, h) in _flat_things(along, points[:, 2], depth, colours):
         if min(w, h) > MAX_SHORT_SIDE or (bottom - floor < MIN_HEIGHT and h < MIN_TALL):
             continue
         front = wall.offset + float(np.percentile(depth[mine], FRONT_PERCENTILE))
@@ -103,12 +107,15 @@ def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Fl
 
 
 def _flat_things(
-    x: Float64 | Float32, y: Float64 | Float32, colours: Float32
-) -> Iterator[tuple[NDArray[np.bool_], tuple[float, float], tuple[float, float]]]:
-    """Of points at (x, y) (N,) metres in a plane, for each thing: which are its, its lowest corner, its sides."""
+    x: Float64 | Float32, y: Float64 | Float32, depth: Float64, colours: Float32
+) -> Iterator[tuple[Bool, tuple[float, float], tuple[float, float]]]:
+    """Of points at (x, y) (N,) metres in a plane, ``depth`` (N,) before it: of each thing the points, the lowest corner
+    and the sides."""
     origin = np.array([x.min(), y.min()])
     column, row = ((x - origin[0]) / CELL).astype(int), ((y - origin[1]) / CELL).astype(int)
-    seen, image = _raster(row, column, colours, (int(row.max()) + 1, int(column.max()) + 1))
+    relief = np.float32(MAX_PAINT_STEP / MAX_RELIEF) * depth[:, None].astype(np.float32)
+    looks = np.concatenate([colours, relief], axis=1)  # (N, 4), in colour steps
+    seen, image = _raster(row, column, looks, (int(row.max()) + 1, int(column.max()) + 1))
     regions = _things(seen, image)
     for k in range(1, regions.max() + 1):
         rows, columns = np.nonzero(regions == k)
@@ -119,21 +126,26 @@ def _flat_things(
 
 
 def _raster(
-    row: NDArray[np.int64], column: NDArray[np.int64], colours: Float32, shape: tuple[int, int]
-) -> tuple[NDArray[np.bool_], Float32]:
-    """Which cells were seen (H, W) and their mean colour (H, W, 3)."""
+    row: NDArray[np.int64], column: NDArray[np.int64], looks: Float32, shape: tuple[int, int]
+) -> tuple[Bool, Float32]:
+    """Which cells were seen (H, W) and their mean looks (H, W, 4)."""
     counts = np.zeros(shape, np.float32)
-    image = np.zeros((*shape, 3), np.float32)
+    image = np.zeros((*shape, looks.shape[1]), np.float32)
     np.add.at(counts, (row, column), 1)
-    np.add.at(image, (row, column), colours)
+    np.add.at(image, (row, column), looks)
     return counts > 0, np.asarray(image / np.maximum(counts, 1)[..., None], np.float32)
 
 
-def _things(seen: NDArray[np.bool_], image: Float32) -> NDArray[np.intp]:
+def _step(a: Float32, b: Float32) -> Float32:
+    """Colour step, or step in depth if that is larger, (...,) between looks (..., 4)."""
+    return np.maximum(colour_step(a[..., :3], b[..., :3]), np.abs(a[..., 3] - b[..., 3]))
+
+
+def _things(seen: Bool, image: Float32) -> NDArray[np.intp]:
     """(H, W) number of the thing that each cell of a wall's raster belongs to, 0 = bare wall or not seen.
 
     The bare wall is the largest region whose neighbouring cells differ little: light may fade across it as it likes. A
-    thing is what is left, with what it surrounds.
+    thing is what is left, with what it surrounds, but for what is not seen: the panes of a window.
     """
     numbers = np.arange(seen.size).reshape(seen.shape)
     pairs = []
@@ -141,21 +153,23 @@ def _things(seen: NDArray[np.bool_], image: Float32) -> NDArray[np.intp]:
         ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
         ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
     ):
-        alike = seen[a] & seen[b] & (colour_step(image[a], image[b]) < MAX_PAINT_STEP)
+        alike = seen[a] & seen[b] & (_step(image[a], image[b]) < MAX_PAINT_STEP)
         pairs.append(np.stack([numbers[a][alike], numbers[b][alike]], axis=1))
     edges = np.concatenate(pairs)
     graph = coo_matrix((np.ones(len(edges), np.int8), (edges[:, 0], edges[:, 1])), shape=(seen.size, seen.size))
     labels = connected_components(graph, directed=False)[1].reshape(seen.shape)
     bare = _bare(seen, labels, image)
     kernel = np.ones((3, 3), bool)
-    other = ndimage.binary_opening(ndimage.binary_fill_holes(seen & ~bare), kernel)
+    other = ndimage.binary_fill_holes(seen & ~bare)
+    other &= ~ndimage.binary_opening(other & ~seen, kernel)
+    other = ndimage.binary_opening(other, kernel)
     return np.asarray(ndimage.label(other, kernel)[0], np.intp)
 
 
-def _bare(seen: NDArray[np.bool_], labels: NDArray[np.int32], image: Float32) -> NDArray[np.bool_]:
+def _bare(seen: Bool, labels: NDArray[np.int32], image: Float32) -> Bool:
     """(H, W) cells of bare wall: the largest region of each stretch of wall that is seen in one piece.
 
-    Bricks and patterned paper make no large region: there it is what resembles the stretch's usual colour.
+    Bricks and patterned paper make no large region: there it is what resembles the stretch's usual looks.
     """
     stretches, count = ndimage.label(seen, np.ones((3, 3), bool))
     bare = np.zeros_like(seen)
@@ -165,6 +179,6 @@ def _bare(seen: NDArray[np.bool_], labels: NDArray[np.int32], image: Float32) ->
         if counts.max() >= MIN_BARE_SHARE * counts.sum():
             bare |= mine & (labels == found[counts.argmax()])
         else:
-            away = colour_step(image[mine], np.median(image[mine], axis=0))  # (C,)
+            away = _step(image[mine], np.median(image[mine], axis=0))  # (C,)
             bare[mine] = away < MAX_PATTERN * np.median(away)
     return bare
