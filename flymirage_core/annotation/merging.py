@@ -3,6 +3,7 @@
 No rule joins what stands on different supports (`Part.thing`), but for lamps whose pole was lost.
 """
 
+from itertools import combinations
 from typing import Final
 
 import numpy as np
@@ -82,6 +83,14 @@ MAX_LEG_HEIGHT: Final = 1.0
 MAX_LEG_CLEARANCE: Final = 0.45
 MAX_BODY_CLEARANCE: Final = 1.3
 """Metres above the floor; higher things have no legs."""
+MIN_FRAME: Final = 0.4
+"""Metres of length and of height of the frames of a rack, ..."""
+MAX_FRAME_GAP: Final = 1.0
+"""... which stand so near behind each other, ..."""
+MAX_FRAME_SHIFT: Final = 0.1
+"""... so exactly in line ..."""
+FRAME_RATIO: Final = 1.25
+"""... and differ by no more."""
 GAP_COST: Final = 20.0
 """Colour step that a metre between a leg and the body above it weighs as much as."""
 
@@ -96,6 +105,7 @@ def merge_parts(parts: PartSet) -> None:
         if not _join_lost_joints(parts):
             break
     _join_thin_pieces(parts)
+    _join_frames(parts)
     _join_contents(parts)
     _join_legs(parts)
 
@@ -258,6 +268,32 @@ def _join_thin_pieces(parts: PartSet) -> None:
         thin = small.footprint.size.min() < THIN and large.thing == small.thing
         if thin and large.footprint.share_inside(small.points, THIN_MARGIN) > MOST:
             parts.join(i, j)
+
+
+def _join_frames(parts: PartSet) -> None:
+    """Thin upright frames on the floor, one behind the other: bicycle racks."""
+    frames = {k: part for k, part in sorted(parts.parts.items()) if _is_frame(part)}
+    joined = {k: k for k in frames}  # number of the part that each frame now belongs to
+    for i, j in combinations(frames, 2):
+        if joined[i] != joined[j] and _next_frame(frames[i], frames[j]):
+            old = {joined[i], joined[j]}
+            new = parts.join(joined[i], joined[j])
+            joined |= {k: new for k, part in joined.items() if part in old}
+
+
+def _is_frame(part: Part) -> bool:
+    short, long = sorted(part.footprint.size)
+    upright = short < THIN and min(long, float(part.extent[2])) > MIN_FRAME
+    return bool(upright and part.clearance < FOOT_CLEARANCE and not part.thing)
+
+
+def _next_frame(a: Part, b: Part) -> bool:
+    offset, turned = np.abs(a.footprint.local(b.footprint.centre[None])[0]), np.abs(a.footprint.local(b.points))
+    axis = int(a.footprint.size.argmax())
+    in_line = offset[axis] < MAX_FRAME_SHIFT and offset[1 - axis] < MAX_FRAME_GAP
+    ratios = [a.footprint.size.max() / b.footprint.size.max(), a.extent[2] / b.extent[2]]
+    alike = max(max(r, 1 / r) for r in ratios) < FRAME_RATIO and colour_step(a.colour, b.colour) < SIMILAR_COLOUR
+    return bool(in_line and alike and np.ptp(turned[:, 1 - axis]) < THIN)
 
 
 def _join_contents(parts: PartSet) -> None:

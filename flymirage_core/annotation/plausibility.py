@@ -14,7 +14,7 @@ from flymirage_core.annotation.room_structure import RoomStructure
 Float32 = NDArray[np.float32]
 
 MIN_OBJECT_POINTS: Final = 25
-LONGEST: Final = 4.5
+LONGEST: Final = 6.0
 """Metres; larger things are a part of the building that was not recognised."""
 SHORTEST: Final = 0.08
 """Metres; a box whose longest side is less is noise."""
@@ -23,6 +23,8 @@ HIGH: Final = 1.9
 CEILING_TRIM: Final = 0.9
 """Metres below the ceiling where trim begins in higher rooms."""
 TRIM_HEIGHT: Final = 0.16
+TRIM_DEPTH: Final = 0.2
+"""Metres that trim stands out from its wall at most; balconies, window boxes and lamps reach farther."""
 TRIM_GAP: Final = 0.15
 """Metres to a wall or to the ceiling within which a high thing is fixed to it."""
 LEDGE_HEIGHT: Final = 0.12
@@ -81,10 +83,11 @@ def _holds(body: FittedBox, box: FittedBox, points: Float32) -> bool:
 
 def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool:
     """High up at a wall, or flat up there, or with nothing above to hang from; what hangs freely is not."""
-    at_wall = structure.wall_gap(box.centre, min(box.size[:2])) < TRIM_GAP
-    afloat = structure.ceiling is None
+    depth = min(box.size[:2])
+    at_wall = structure.wall_gap(box.centre, depth) < TRIM_GAP
+    afloat = structure.ceiling is None and not at_wall
     high = HIGH if structure.ceiling is None else max(HIGH, structure.ceiling - structure.floor - CEILING_TRIM)
-    return clearance > high and not box.hanging and (at_wall or afloat or box.size[2] < TRIM_HEIGHT)
+    return clearance > high and not box.hanging and ((at_wall and depth < TRIM_DEPTH) or afloat or box.size[2] < TRIM_HEIGHT)
 
 
 def _is_ledge(box: FittedBox, structure: RoomStructure) -> bool:

@@ -32,8 +32,8 @@ MAX_GAP: Final = 0.75
 """Of a thing's length: what is farther apart is held together by something else."""
 TAIL: Final = 0.2
 """Of the largest piece's points: smaller ones are blur beyond the row's ends."""
-ALIKE: Final = (1.6, 1.2, 4.0)
-"""Ratio of lengths, of heights and of numbers of points up to which pieces are alike."""
+ALIKE: Final = (1.6, 1.6, 1.2, 4.0)
+"""Ratio of lengths, of widths, of heights and of numbers of points up to which pieces are alike; a bicycle's are not."""
 MIN_EVEN: Final = 0.4
 """Metres of each thing from which three or more are known by dips at equal distances ..."""
 LONG: Final = 4.0
@@ -53,7 +53,8 @@ def in_row(points: Float32, yaw: float) -> list[Index]:
         counts = np.convolve(np.bincount(slices), np.ones(3) / 3, "same")
         dips = _dips(counts)
         width = float(plan.size[1 - axis])
-        pieces = _between_necks(slices, counts, points[:, 2], dips, max(MIN_LENGTH, MIN_SHAPE * width))
+        section = np.stack([local[:, 1 - axis], points[:, 2]], axis=1)  # (M, 2)
+        pieces = _between_necks(slices, counts, section, dips, max(MIN_LENGTH, MIN_SHAPE * width))
         pieces = pieces or _even(slices, counts, dips, max(MIN_EVEN, width))
         if pieces:
             return [piece[again] for piece in pieces for again in in_row(points[piece], yaw)]
@@ -69,8 +70,8 @@ def _dips(counts: Float64) -> Index:
     return np.flatnonzero(dip[1:] & ~dip[:-1]) + 1
 
 
-def _between_necks(slices: Index, counts: Float64, heights: Float32, dips: Index, min_length: float) -> list[Index]:
-    """Pieces between those dips that are necks, if all are alike."""
+def _between_necks(slices: Index, counts: Float64, section: Float64, dips: Index, min_length: float) -> list[Index]:
+    """Pieces between those dips that are necks, if all are alike. ``section``: (M, 2) across the row, and height."""
     while len(dips):
         ends = [0, *dips, len(counts)]
         usual = [float(np.median(counts[a:b])) for a, b in pairwise(ends)]
@@ -81,7 +82,7 @@ def _between_necks(slices: Index, counts: Float64, heights: Float32, dips: Index
     pieces = _cut(slices, dips)
     largest = max(len(piece) for piece in pieces)
     pieces = [piece for piece in pieces if len(piece) > TAIL * largest]
-    return pieces if len(pieces) > 1 and _alike(pieces, slices, counts, heights, min_length) else []
+    return pieces if len(pieces) > 1 and _alike(pieces, slices, counts, section, min_length) else []
 
 
 def _cut(slices: Index, cuts: Index | list[int]) -> list[Index]:
@@ -89,14 +90,15 @@ def _cut(slices: Index, cuts: Index | list[int]) -> list[Index]:
     return [np.flatnonzero(piece == k) for k in range(len(cuts) + 1)]
 
 
-def _alike(pieces: list[Index], slices: Index, counts: Float64, heights: Float32, min_length: float) -> bool:
-    """Whether pieces are of one length, height and number of points, and near each other."""
+def _alike(pieces: list[Index], slices: Index, counts: Float64, section: Float64, min_length: float) -> bool:
+    """Whether pieces are of one length, width, height and number of points, and near each other."""
     full = [np.unique(slices[piece]) for piece in pieces]
     full = [s[counts[s] > NECK * np.median(counts[s])] for s in full]  # without what lies in the gaps
     lengths = np.array([SLICE * (s[-1] - s[0] + 1) for s in full])
     gaps = [SLICE * (b[0] - a[-1]) for a, b in pairwise(full)]
-    tops = np.array([np.percentile(heights[piece], 98) for piece in pieces]) - heights.min()
-    measures = (lengths, tops, np.array([len(piece) for piece in pieces]))
+    ends = np.array([np.percentile(section[piece], (2, 98), axis=0) for piece in pieces])  # (P, 2, 2)
+    widths, tops = ends[:, 1, 0] - ends[:, 0, 0] + SLICE, ends[:, 1, 1] - section[:, 1].min()
+    measures = (lengths, widths, tops, np.array([len(piece) for piece in pieces]))
     alike = all(m.max() < ratio * m.min() for m, ratio in zip(measures, ALIKE, strict=True))
     return bool(alike and lengths.min() >= min_length and max(gaps) < MAX_GAP * lengths.min())
 

@@ -38,7 +38,7 @@ MIN_THING_HEIGHT: Final = 0.05
 MIN_THING_POINTS: Final = 25
 EDGE: Final = 0.02
 """Metres in from the face's rim where the base must lie: backs and arms of seats rise from the rim."""
-MIN_BASE_INSIDE: Final = 0.85
+MIN_BASE_INSIDE: Final = 0.55
 MIN_INSIDE: Final = 0.6
 """Share of the whole thing over the face: leaves and lamp shades overhang."""
 MAX_SHARE: Final = 0.6
