@@ -38,7 +38,9 @@ LEAST_UNNAMED: Final = (0.10, 0.15)
 """Metres: least thickness (but flat on a wall) and least second longest side of a thing that nobody has a name for;
 what is thinner is a slat, a frame, a strip."""
 MIN_VIEWS: Final = 4
-"""Views that must have seen a thing that nobody has a name for."""
+"""Views that must have seen a thing that nobody has a name for, ..."""
+SURELY_A_THING: Final = 0.3
+"""... unless it is no left-over for all that the recogniser knows."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 PILLAR: Final = (2.2, 0.8)
@@ -86,7 +88,7 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     if name.noun == UNKNOWN and _is_pillar_or_beam(box):
         return False
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
-    return name.noun != UNKNOWN or not (slat or seen.views < MIN_VIEWS)
+    return name.noun != UNKNOWN or not (slat or (seen.views < MIN_VIEWS and name.left_over > SURELY_A_THING))
 
 
 def is_bare_front(thing: Observation, name: Name) -> bool:
