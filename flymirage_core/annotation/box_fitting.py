@@ -55,7 +55,15 @@ ONE_SIDED: Final = 0.8
 MAX_ONE_SIDED: Final = 0.7
 """Metres of width up to which its back is guessed."""
 UNDER_CEILING: Final = 1.2
-"""Metres: cords and chains are too thin to be seen."""
+"""Metres below the ceiling within which a thing hangs from it."""
+MAX_CORD: Final = 0.45
+"""Metres of cord, seen or too thin to be, that count as a part of a lamp; in high rooms cords are longer ..."""
+MAX_LAMP_SIDE: Final = 0.8
+"""... and what is longer than this, trays and beams, has none."""
+CORD: Final = 0.12
+"""Metres; as thin as that are the slices of a cord ..."""
+CORD_SLICE: Final = 0.06
+"""... so many metres high."""
 MIN_HANGING: Final = 1.4
 """Metres above the floor."""
 
@@ -167,6 +175,7 @@ def fit_box(
     ``points``: (N, 3). ``to_camera``: (N, 3) directions to where each was seen from. ``members``: (M,) its points.
     ``max_wall_gap``: metres, `MAX_WALL_GAP` or `MAX_CARRIED_GAP`.
     """
+    seen, members = len(members), _without_cord(points, members, structure)
     cloud = points[members]
     plan = _with_unseen_half(fit_footprint(cloud, structure.yaw), to_camera[members])
     low, high = _trimmed_range(cloud[:, 2:].astype(np.float64), HEIGHT_TRIM)
@@ -179,8 +188,23 @@ def fit_box(
         (float(plan.size[0]), float(plan.size[1]), top - bottom),
         plan.yaw,
         members,
+        hanging=len(members) < seen,
     )
     return _reaching_wall(box, structure, max_wall_gap, tall=top - floor > TALL and bottom <= floor)
+
+
+def _without_cord(points: Float32, members: NDArray[np.intp], structure: RoomStructure) -> NDArray[np.intp]:
+    """The members of what hangs high up, but for most of the thin upper end that it hangs by."""
+    cloud = points[members]
+    foot = float(cloud[:, 2].min())
+    if foot - structure.floor < MIN_HANGING:
+        return members
+    slices = ((cloud[:, 2] - foot) / CORD_SLICE).astype(int)  # (M,)
+    lower, upper = np.full((slices.max() + 1, 2), np.inf), np.full((slices.max() + 1, 2), -np.inf)
+    np.minimum.at(lower, slices, cloud[:, :2])
+    np.maximum.at(upper, slices, cloud[:, :2])
+    wide = np.flatnonzero((upper - lower).max(axis=1) > CORD)
+    return members[slices <= wide[-1] + MAX_CORD / CORD_SLICE] if len(wide) else members
 
 
 def _with_unseen_half(plan: Footprint, to_camera: Float32) -> Footprint:
@@ -254,7 +278,7 @@ def _face_below(box: FittedBox, faces: Sequence[LevelFace], structure: RoomStruc
 
 
 def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> FittedBox:
-    if on_floor(box, structure):
+    if on_floor(box, structure) or box.hanging:
         return box
     floor = float(structure.floor_map.at(np.array([box.centre[:2]]))[0])
     support = floor
@@ -272,7 +296,8 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
     if not on_wall and gap > MAX_WALL_DROP and box.bottom - floor > MIN_HANGING and structure.ceiling_map is not None:
         ceiling = float(structure.ceiling_map.at(np.array([box.centre[:2]]))[0])
         if ceiling - box.top < UNDER_CEILING:
-            return replace(_between(box, box.bottom, ceiling), hanging=True)
+            short = ceiling - box.top < MAX_CORD and max(box.size[:2]) < MAX_LAMP_SIDE
+            return replace(_between(box, box.bottom, ceiling) if short else box, hanging=True)
     if gap <= MIN_GAP or gap >= MAX_SUPPORT_GAP or (on_wall and gap > MAX_WALL_DROP):
         return box
     return _between(box, box.bottom - gap, box.top)
