@@ -56,7 +56,7 @@ MAX_ONE_SIDED: Final = 0.7
 """Metres of width up to which its back is guessed."""
 UNDER_CEILING: Final = 1.2
 """Metres below the ceiling within which a thing hangs from it."""
-MAX_CORD: Final = 0.45
+MAX_CORD: Final = 0.6
 """Metres of cord, seen or too thin to be, that count as a part of a lamp; in high rooms cords are longer ..."""
 MAX_LAMP_SIDE: Final = 0.8
 """... and what is longer than this, trays and beams, has none."""

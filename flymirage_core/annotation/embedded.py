@@ -43,6 +43,7 @@ from flymirage_core.annotation.segmentation import (
     smoothed_colours,
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
+from flymirage_core.annotation.tops import take_off_tops
 from flymirage_core.annotation.wall_objects import ceiling_objects, wall_objects
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
 from flymirage_core.rendering.views import View
@@ -159,6 +160,7 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     faces = level_faces(cloud.points[objects], normals, edges, structure.floor, structure.yaw)
     parts = colour_parts(_surface(cloud[objects], normals, edges, faces, structure, voxel))
     merge_parts(parts)
+    take_off_tops(parts)
     boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
     boxes = [box for box in boxes if is_thing(box, structure)]
     colours = shading_free(to_lab(cloud.colours))

@@ -116,6 +116,15 @@ class PartSet:
         self.parts[i] = Part(self.surface, np.sort(np.concatenate([a.members, b.members])))
         return i
 
+    def split(self, i: int, members: Index) -> int:
+        """Make ``members`` (M,), ascending, of part ``i`` a part of their own; its number."""
+        number = self._count
+        self._count += 1
+        self.labels[members] = number
+        self.parts[number] = Part(self.surface, members)
+        self.parts[i] = Part(self.surface, np.setdiff1d(self.parts[i].members, members, assume_unique=True))
+        return number
+
     def contacts(self) -> list[tuple[int, int, int]]:
         """(i, j, number of edges between them) for all parts that touch, the longest contact first."""
         a, b = self.labels[self.surface.edges[:, 0]], self.labels[self.surface.edges[:, 1]]

@@ -160,7 +160,11 @@ def _things(seen: Bool, image: Float32) -> NDArray[np.intp]:
     labels = connected_components(graph, directed=False)[1].reshape(seen.shape)
     bare = _bare(seen, labels, image)
     kernel = np.ones((3, 3), bool)
-    other = ndimage.binary_fill_holes(seen & ~bare)
+    other = seen & ~bare
+    rims = ndimage.label(other, kernel)[0]
+    for k, place in enumerate(ndimage.find_objects(rims), 1):
+        if min(rims[place].shape) * CELL <= MAX_SHORT_SIDE:  # larger ones are corners of the room
+            other[place] |= ndimage.binary_fill_holes(rims[place] == k)
     other &= ~ndimage.binary_opening(other & ~seen, kernel)
     other = ndimage.binary_opening(other, kernel)
     return np.asarray(ndimage.label(other, kernel)[0], np.intp)
