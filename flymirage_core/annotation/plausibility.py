@@ -87,7 +87,8 @@ def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool
     at_wall = structure.wall_gap(box.centre, depth) < TRIM_GAP
     afloat = structure.ceiling is None and not at_wall
     high = HIGH if structure.ceiling is None else max(HIGH, structure.ceiling - structure.floor - CEILING_TRIM)
-    return clearance > high and not box.hanging and ((at_wall and depth < TRIM_DEPTH) or afloat or box.size[2] < TRIM_HEIGHT)
+    flat = box.size[2] < TRIM_HEIGHT or (at_wall and depth < TRIM_DEPTH)
+    return clearance > high and not box.hanging and (flat or afloat)
 
 
 def _is_ledge(box: FittedBox, structure: RoomStructure) -> bool:

@@ -33,7 +33,7 @@ MAX_GAP: Final = 0.75
 TAIL: Final = 0.2
 """Of the largest piece's points: smaller ones are blur beyond the row's ends."""
 ALIKE: Final = (1.6, 1.6, 1.2, 4.0)
-"""Ratio of lengths, of widths, of heights and of numbers of points up to which pieces are alike; a bicycle's are not."""
+"""Ratio of lengths, widths, heights and numbers of points up to which pieces are alike; ends of a bicycle are not."""
 MIN_EVEN: Final = 0.4
 """Metres of each thing from which three or more are known by dips at equal distances ..."""
 LONG: Final = 4.0

@@ -1,4 +1,4 @@
-"""Flat things on walls (pictures, mirrors, screens, boards) and ceilings (lights), found in a raster by colour and relief."""
+"""Flat things on walls (pictures, mirrors, screens, boards) and ceilings (lights), by colour and relief in a raster."""
 
 from collections.abc import Iterator
 from typing import Final
@@ -28,12 +28,12 @@ MIN_POINTS: Final = 200
 """Of a wall or ceiling, for it to be looked at."""
 MAX_PAINT_STEP: Final = 3.0
 """Colour step between neighbouring cells up to which both are bare wall ..."""
-MAX_RELIEF: Final = 0.012
+MAX_RELIEF: Final = 0.007
 """... if one is no more metres before the other: a white board on a white wall is not."""
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
 MAX_PATTERN: Final = 3.0
-"""Step from the usual colour and depth of a stretch without such a region, over the median of all: bricks, wallpaper."""
+"""Step from the usual looks of a stretch without such a region, over the median of all: bricks, wallpaper."""
 FRONT_PERCENTILE: Final = 60
 MIN_AREA: Final = 0.06
 """Square metres."""
@@ -138,7 +138,7 @@ def _raster(
 
 def _step(a: Float32, b: Float32) -> Float32:
     """Colour step, or step in depth if that is larger, (...,) between looks (..., 4)."""
-    return np.maximum(colour_step(a[..., :3], b[..., :3]), np.abs(a[..., 3] - b[..., 3]))
+    return np.asarray(np.maximum(colour_step(a[..., :3], b[..., :3]), np.abs(a[..., 3] - b[..., 3])), np.float32)
 
 
 def _things(seen: Bool, image: Float32) -> NDArray[np.intp]:

@@ -5,7 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from analytic_room import Room, Thing, block, chair, lamp, make_box, picture, sweep, table, views_of
+from analytic_room import Body, Room, Thing, block, chair, lamp, make_box, picture, sweep, table, views_of
 
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
@@ -104,6 +104,34 @@ def test_a_picture_is_found_on_its_wall_with_the_right_size():
     assert iou > 0.4
     assert sorted(box.size)[1:] == pytest.approx([0.65, 0.9], abs=0.08)
     assert min(box.size) < 0.12
+
+
+def test_a_board_of_the_walls_own_colour_is_found_by_its_relief():
+    board = picture((0.5, 2.2, 1.5), (165, 160, 150))  # lit as boards are, it looks like the wall
+    frames = frames_of(room_views(Room((5, 4.4, 2.6), (board,), 0.0)))
+    found = [thing.box for thing, _ in ANNOTATOR.observations(frames, math.inf)]
+    assert best(found, board.box)[0] > 0.4
+
+
+def test_a_box_of_the_counters_colour_near_its_rim_is_told_from_it():
+    counter = block("counter", (0.9, 0.8, 0), (1.5, 0.6, 0.95), GREY)
+    till = block("till", (1.4, 0.75, 0.95), (0.4, 0.38, 0.3), GREY)
+    boxes = annotated(counter, till)
+    assert min(best(boxes, t.box)[0] for t in (counter, till)) > 0.4
+
+
+def test_the_back_of_a_counter_is_no_thing_on_it():
+    back = block("counter", (0.9, 0.8, 0), (1.5, 0.6, 0.95), GREY)
+    back = Thing("counter", back.place, 0.0, (*back.bodies, Body((0.0, 0.24, 1.1), (1.5, 0.12, 0.3), GREY)))
+    assert len(annotated(back)) == 1
+
+
+def test_a_bicycle_rack_is_one_thing():
+    hoops = tuple(Body((0.7 * k, 0.0, 0.38), (0.06, 0.7, 0.76), GREY) for k in (-1, 0, 1))
+    rack = Thing("rack", (0.6, 0.6, 0), 0.0, hoops)
+    frames = frames_of(room_views(Room((5, 4.4, 2.6), (rack,), 0.0)))
+    found = [thing.box for thing, _ in ANNOTATOR.observations(frames, math.inf)]
+    assert best(found, rack.box)[0] > 0.6
 
 
 def test_an_empty_room_has_no_objects_so_floor_ceiling_and_walls_are_none():

@@ -74,3 +74,7 @@ def view(depth: float) -> Frame:
 @pytest.mark.parametrize(("depth", "open_air"), [(45.0, True), (4.0, False), (0.0, False)])
 def test_sky_is_what_is_farther_up_than_any_ceiling(depth, open_air):
     assert sees_sky([view(depth)]) is open_air
+
+
+def test_a_little_sky_between_trees_and_houses_is_enough():
+    assert sees_sky([view(45.0)] + 15 * [view(4.0)])

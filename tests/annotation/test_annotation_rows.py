@@ -33,6 +33,12 @@ def test_bins_in_a_row_are_cut_in_the_gaps_between_them(count):
     assert all(0.55 < np.ptp(points[piece, 0]) < 0.8 for piece in found)
 
 
+def test_a_bicycle_is_not_cut_between_its_wheels():
+    rear, front = shell((0, 0.22, 0), (0.7, 0.12, 1.0)), shell((0.95, 0, 0), (0.7, 0.56, 1.0))
+    bicycle = np.concatenate([rear, blur(0.7, 0.95, 0.2), front])
+    assert len(in_row(bicycle, 0.0)) == 1
+
+
 def test_barriers_end_to_end_are_cut_where_their_ends_show():
     points = np.concatenate([shell((2.1 * k, 0, 0), (2.04, 0.4, 0.8)) for k in range(3)])
     assert sorted(round(float(points[piece, 0].min()), 1) for piece in in_row(points, 0.0)) == [0.0, 2.1, 4.2]

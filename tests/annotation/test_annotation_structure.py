@@ -1,7 +1,10 @@
 """What of a hall is building: walls are, beams and what stands below them in one plane are not."""
 
 import numpy as np
+import pytest
 
+from flymirage_core.annotation.box_fitting import MAX_WALL_GAP, FittedBox, fit_box, settle
+from flymirage_core.annotation.plausibility import is_thing
 from flymirage_core.annotation.room_structure import find_structure
 
 STEP = 0.05
@@ -48,3 +51,39 @@ def test_what_is_built_before_a_wall_in_a_hall_is_not_the_wall():
     lockers = plane((-5.5, -3, 0), (0, 5, 0), (0, 0, 3), (1, 0, 0))
     found = structure(*HALL, lockers)
     assert len(found.walls) == 4
+
+
+def thing(*boxes):
+    """Points (N, 3) over the upright sides of boxes, each given by its middle in plan, size in plan, bottom and top."""
+    sides = []
+    for (x, y), (w, d), bottom, top in boxes:
+        for edge, normal in (((w, 0, 0), (0, 1, 0)), ((0, d, 0), (1, 0, 0))):
+            for k in (-1, 1):
+                corner = np.array([x, y, bottom]) + k * np.array(normal) * (w / 2, d / 2, 0) - np.array(edge) / 2
+                sides.append(plane(corner, edge, (0, 0, top - bottom), normal)[0])
+    return np.concatenate(sides)
+
+
+def hung(*boxes):
+    points, hall = thing(*boxes), structure(*HALL)
+    box = fit_box(points, np.zeros_like(points), np.arange(len(points)), hall, MAX_WALL_GAP)
+    return settle([box], hall, [])[0]
+
+
+def test_a_lamp_on_a_long_cord_keeps_little_of_the_cord():
+    lamp = hung(((0, 0), (0.5, 0.5), 2.6, 2.9), ((0, 0), (0.06, 0.06), 2.9, 5.0))
+    assert lamp.hanging
+    assert lamp.bottom == pytest.approx(2.6, abs=0.06)
+    assert lamp.top < 3.6
+
+
+def test_a_lamp_close_under_the_ceiling_hangs_from_it_and_a_tray_stays_where_it_was_seen():
+    assert hung(((0, 0), (0.5, 0.5), 4.1, 4.5)).top == pytest.approx(5.0, abs=0.06)
+    assert hung(((0, 0), (2.5, 0.3), 4.1, 4.5)).top == pytest.approx(4.5, abs=0.06)
+
+
+def test_a_flower_box_high_on_a_wall_is_a_thing_and_a_cornice_is_none():
+    hall = structure(*HALL)
+    box, cornice = (FittedBox((0, -4 + d / 2, 4.5), (1.0, d, 0.3), 0.0, np.arange(500)) for d in (0.3, 0.12))
+    assert is_thing(box, hall)
+    assert not is_thing(cornice, hall)
