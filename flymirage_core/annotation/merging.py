@@ -288,12 +288,12 @@ def _is_frame(part: Part) -> bool:
 
 
 def _next_frame(a: Part, b: Part) -> bool:
-    offset, turned = np.abs(a.footprint.local(b.footprint.centre[None])[0]), np.abs(a.footprint.local(b.points))
+    offset = np.abs(a.footprint.local(b.footprint.centre[None])[0])
     axis = int(a.footprint.size.argmax())
     in_line = offset[axis] < MAX_FRAME_SHIFT and offset[1 - axis] < MAX_FRAME_GAP
     ratios = [a.footprint.size.max() / b.footprint.size.max(), a.extent[2] / b.extent[2]]
     alike = max(max(r, 1 / r) for r in ratios) < FRAME_RATIO and colour_step(a.colour, b.colour) < SIMILAR_COLOUR
-    return bool(in_line and alike and np.ptp(turned[:, 1 - axis]) < THIN)
+    return bool(in_line and alike and np.ptp(a.footprint.local(b.points)[:, 1 - axis]) < THIN)
 
 
 def _join_contents(parts: PartSet) -> None:

@@ -14,8 +14,10 @@ from flymirage_core.annotation.room_structure import RoomStructure
 Float32 = NDArray[np.float32]
 
 MIN_OBJECT_POINTS: Final = 25
-LONGEST: Final = 6.0
-"""Metres; larger things are a part of the building that was not recognised."""
+LONGEST: Final = 4.5
+"""Metres; larger things are a part of the building that was not recognised ..."""
+LONGEST_OUTDOORS: Final = 6.0
+"""... and under an open sky, where vans stand, of the place."""
 SHORTEST: Final = 0.08
 """Metres; a box whose longest side is less is noise."""
 HIGH: Final = 1.9
@@ -34,6 +36,10 @@ PANEL_HEIGHT: Final = 1.9
 PANEL_DEPTH: Final = 0.2
 PANEL_GAP: Final = 0.3
 """Metres to the wall that a panel runs along."""
+FULL_HEIGHT: Final = 0.2
+"""Metres below the ceiling to which only the building rises from the floor, panelling and pillars, ..."""
+MIN_FULL_LENGTH: Final = 1.2
+"""... or at least what is so long and still does."""
 FRAME_SIDE: Final = 0.16
 """Metres; what is as high as a panel and thinner than this both ways is a door frame or the edge of a pillar."""
 SKIN_HEIGHT: Final = 0.05
@@ -56,7 +62,8 @@ HELD_SHARE: Final = 0.8
 
 def is_thing(box: FittedBox, structure: RoomStructure) -> bool:
     """Whether a box made from parts is an object, rather than a left-over."""
-    if not SHORTEST <= max(box.size) <= LONGEST:
+    longest = LONGEST if structure.ceiling is not None else LONGEST_OUTDOORS
+    if not SHORTEST <= max(box.size) <= longest:
         return False
     clearance = box.bottom - structure.floor
     building = _is_trim(box, clearance, structure) or _is_ledge(box, structure) or _is_panel(box, structure)
@@ -101,6 +108,9 @@ def _is_panel(box: FittedBox, structure: RoomStructure) -> bool:
     short, long = sorted(box.size[:2])
     if box.size[2] < PANEL_HEIGHT:
         return False
+    full = structure.ceiling is not None and box.size[2] > structure.ceiling - structure.floor - FULL_HEIGHT
+    if full and long > MIN_FULL_LENGTH:
+        return True
     return long < FRAME_SIDE or (short < PANEL_DEPTH and structure.wall_gap(box.centre, short) < PANEL_GAP)
 
 
