@@ -77,7 +77,7 @@ FULL_EVIDENCE: Final = 12
 class EmbeddedAnnotator:
     """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
 
-    version = "6"
+    version = "7"
 
     def __init__(self, settings: AnnotationSettings, detector: YoloxDetector | None = None) -> None:
         self.settings = settings

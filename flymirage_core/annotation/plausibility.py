@@ -36,10 +36,6 @@ PANEL_HEIGHT: Final = 1.9
 PANEL_DEPTH: Final = 0.2
 PANEL_GAP: Final = 0.3
 """Metres to the wall that a panel runs along."""
-FULL_HEIGHT: Final = 0.2
-"""Metres below the ceiling to which only the building rises from the floor, panelling and pillars, ..."""
-MIN_FULL_LENGTH: Final = 1.2
-"""... or at least what is so long and still does."""
 FRAME_SIDE: Final = 0.16
 """Metres; what is as high as a panel and thinner than this both ways is a door frame or the edge of a pillar."""
 SKIN_HEIGHT: Final = 0.05
@@ -108,9 +104,6 @@ def _is_panel(box: FittedBox, structure: RoomStructure) -> bool:
     short, long = sorted(box.size[:2])
     if box.size[2] < PANEL_HEIGHT:
         return False
-    full = structure.ceiling is not None and box.size[2] > structure.ceiling - structure.floor - FULL_HEIGHT
-    if full and long > MIN_FULL_LENGTH:
-        return True
     return long < FRAME_SIDE or (short < PANEL_DEPTH and structure.wall_gap(box.centre, short) < PANEL_GAP)
 
 

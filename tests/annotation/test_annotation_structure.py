@@ -87,10 +87,3 @@ def test_a_flower_box_high_on_a_wall_is_a_thing_and_a_cornice_is_none():
     box, cornice = (FittedBox((0, -4 + d / 2, 4.5), (1.0, d, 0.3), 0.0, np.arange(500)) for d in (0.3, 0.12))
     assert is_thing(box, hall)
     assert not is_thing(cornice, hall)
-
-
-def test_what_rises_from_floor_to_ceiling_over_some_length_is_the_building():
-    hall = structure(*HALL)
-    panelling, locker = (FittedBox((0, 0, h / 2), (2.0, 0.45, h), 0.0, np.arange(500)) for h in (4.9, 2.0))
-    assert is_thing(locker, hall)
-    assert not is_thing(panelling, hall)
