@@ -19,7 +19,7 @@ from flymirage_core.rendering.placements import orbit, view_intrinsics
 from flymirage_core.rendering.views import View
 from flymirage_core.scene.description import SceneDescription
 from flymirage_core.scene.writer import OfflineSceneWriter
-from flymirage_core.settings import Settings
+from flymirage_core.settings import GenerationSettings, Settings
 from flymirage_core.splats.imports import import_world
 from flymirage_core.splats.world import World
 from flymirage_core.worldgen.assembly import build_truth
@@ -55,7 +55,7 @@ def a_home() -> SceneDescription:
 @pytest.mark.slow
 def test_objects_of_a_generated_world_are_found_where_they_are():
     description = a_home()
-    first, boxes, views = both_passes(OfflineWorldModel(SETTINGS.generation).build(description))
+    first, boxes, views = both_passes(OfflineWorldModel(GenerationSettings(fitting_views=0)).build(description))
     positions = np.array([v.camera.position for v in views])
     truth = [
         t
