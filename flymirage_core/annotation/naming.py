@@ -45,8 +45,6 @@ PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 PILLAR: Final = (2.2, 0.8)
 """Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post."""
-BEAM_RATIO: Final = 4.0
-"""Length against width from which what hangs and has no name is a part of the ceiling."""
 BARE_FRONT: Final = (0.05, 0.35)
 """Metres of relief up to which only a face flush with its wall was seen of a thing above the floor, and the left-over
 probability from which that is a panel of the wall, a headboard behind pillows, if nobody has a name for it."""
@@ -85,7 +83,7 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
     if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
-    if name.noun == UNKNOWN and _is_pillar_or_beam(box):
+    if name.noun == UNKNOWN and _is_pillar(box):
         return False
     slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
     return name.noun != UNKNOWN or not (slat or (seen.views < MIN_VIEWS and name.left_over > SURELY_A_THING))
@@ -97,10 +95,8 @@ def is_bare_front(thing: Observation, name: Name) -> bool:
     return name.noun == UNKNOWN and built and thing.relief < BARE_FRONT[0] and name.left_over >= BARE_FRONT[1]
 
 
-def _is_pillar_or_beam(box: FittedBox) -> bool:
-    short, long = sorted(box.size[:2])
-    pillar = box.size[2] > PILLAR[0] and short < PILLAR[1]
-    return pillar or (box.hanging and long > BEAM_RATIO * short)
+def _is_pillar(box: FittedBox) -> bool:
+    return box.size[2] > PILLAR[0] and min(box.size[:2]) < PILLAR[1]
 
 
 def chosen_name(recognition: Recognition, vote: Vote | None, box: FittedBox) -> Name:

@@ -256,11 +256,6 @@ def test_of_a_nameless_thing_at_a_wall_more_than_a_flat_face_must_be_seen():
     assert not is_bare_front(observed(0.03), name(left_over=0.1))
 
 
-def test_nameless_beams_of_the_ceiling_are_dropped_and_hanging_lamps_stay():
-    assert not is_believed(replace(box(0, (0.2, 1.6, 0.5)), hanging=True), name(), seen())
-    assert is_believed(replace(box(0, (0.6, 0.6, 1.2)), hanging=True), name(), seen())
-
-
 def test_a_nameless_thing_needs_several_views_and_a_named_one_or_what_surely_is_a_thing_does_not():
     assert not is_believed(box(0), name(left_over=0.5), seen(views=3))
     assert is_believed(box(0), name(left_over=0.5), seen(views=4))
