@@ -11,9 +11,9 @@ SUMS = 9
 """Of each splat: colour gradient (3), weight, and the shape's gradient (5)."""
 BETA, BETA_SQUARES = F(0.9), F(0.99)
 """Adam's decay of the mean gradient and of its square (Kingma & Ba 2015)."""
-LOWEST = np.array([-0.4, -0.4, -10, -1, -1], np.float32)
-HIGHEST = np.array([0.4, 0.4, 10, 1, 1], np.float32)
-"""Bounds of the shape. Where splats shrink freely, what is behind shows between them, and depth is wrong."""
+LOWEST = np.array([0, 0, -10, -0.25, -0.25], np.float32)
+HIGHEST = np.array([0.15, 0.15, 10, 0.25, 0.25], np.float32)
+"""Bounds of the shape. Splats that shrink or leave their place open cracks that only nearer views show."""
 SEEN = F(1e-3)
 """Pixels: a splat that covers less in a step's pictures stays as it is."""
 

@@ -64,7 +64,7 @@ def test_depth_hardly_suffers(lit, fit, unseen):
         errors.append(np.concatenate(error))
     before, after = errors
     assert np.median(after) < np.median(before) + 0.005
-    assert (after > 0.1).mean() < (before > 0.1).mean() + 0.02
+    assert (after > 0.2).mean() < (before > 0.2).mean() + 0.01
 
 
 def test_splats_stay_in_their_faces_planes(lit, fit):
@@ -73,7 +73,7 @@ def test_splats_stay_in_their_faces_planes(lit, fit):
     shift = fit.means - lit.cloud.means
     assert np.abs((normals * turned).sum(axis=1) - 1).max() < 1e-5
     assert np.abs((normals * shift).sum(axis=1)).max() < 1e-4
-    assert (np.linalg.norm(shift, axis=1) <= 1.5 * lit.cloud.scales.max(axis=1) + 1e-5).all()
+    assert (np.linalg.norm(shift, axis=1) <= 0.4 * lit.cloud.scales.max(axis=1) + 1e-5).all()
     assert np.abs(shift).max() > 0.001
     assert (fit.scales[:, 2] == lit.cloud.scales[:, 2]).all()
 
@@ -103,3 +103,13 @@ def test_light_shared_by_small_cells_is_nearly_the_light_of_each_pixel(lit, unse
     shared = SharedLightTracer(lit).pictures(views)
     error = np.abs(np.stack(shared) - np.stack(exact))
     assert error.mean() < 0.006 and np.quantile(error, 0.95) < 0.03
+
+
+def test_no_splat_leaves_a_crack(lit, fit, unseen):
+    """None shrinks, so that views nearer than those it was fitted to show no gap either."""
+    assert (fit.scales >= lit.cloud.scales - 1e-7).all()
+    near = [
+        replace(v, intrinsics=replace(v.intrinsics, fx=4 * v.intrinsics.fx, fy=4 * v.intrinsics.fy)) for v in unseen[0]
+    ]
+    lacking = [np.mean([1 - p.alpha for p in CpuRasterizer().render_float(cloud, near)]) for cloud in (lit.cloud, fit)]
+    assert lacking[1] < lacking[0] + 0.002
