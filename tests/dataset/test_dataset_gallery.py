@@ -81,11 +81,14 @@ def test_a_browser_draws_it_finds_no_error_and_asks_nobody(gallery: Path) -> Non
     play = (
         "Promise.race([new Promise(done => {const v = document.querySelector('video');"
         "v.onloadeddata = () => done(v.videoWidth); v.onerror = () => done('error'); v.load(); v.play()}),"
-        "new Promise(done => setTimeout(() => done('never'), 15000))])"
+        "new Promise(done => setTimeout(() => done('never'), 50000))])"
     )
     scene = browser.visit((gallery / "scenes" / "cafe.html").as_uri(), 6, play)
     assert scene.answer == 64  # the video's width: it was decoded
-    canvas = "!!document.querySelector('canvas')"
+    canvas = (
+        "new Promise(done => {const look = () => "
+        "document.querySelector('canvas') ? done(true) : setTimeout(look, 200); look();})"
+    )
     world = browser.visit((gallery / "scenes" / "cafe-3d.html").as_uri(), 3, canvas, shows_the_world, size=(640, 480))
     assert world.answer is True and world.shown, "the splats, or what stands on them, are not on the canvas"
     for seen in (front, scene, world):
