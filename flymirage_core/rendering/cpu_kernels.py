@@ -102,12 +102,16 @@ def render_frame(
     fy, cx, cy, width, height. ``records`` (N, 16) and ``ids`` (N,) are scratch, for one thread at a time. Not compiled
     itself: LLVM would optimise all of the kernels once more, for a second of the first start.
     """
+    starts, lists, _ = binned(splats, camera, records, ids)
+    _blend(records, starts, lists, rgb, depth, alpha)
+
+
+def binned(splats: Splats, camera: Float64, records: Float32, ids: UInt32) -> tuple[Int64, UInt32, int]:
+    """The first half of `render_frame`: what `_bin` returns, and how many records were written."""
     means, axes, opacities, file_indices, blocks, sh = splats
-    height, width = alpha.shape
     count = _project(means, axes, opacities, sh, blocks, camera, records, ids)
     order = _depth_order(records, ids, file_indices, count)
-    starts, lists = _bin(records, order, width, height)
-    _blend(records, starts, lists, rgb, depth, alpha)
+    return *_bin(records, order, int(camera[16]), int(camera[17])), count
 
 
 def compiled() -> bool:

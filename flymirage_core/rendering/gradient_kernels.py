@@ -3,8 +3,6 @@
 They call functions of `cpu_kernels`: after a change there, touch this file, or numba's cache keeps what was compiled.
 """
 
-import math
-
 import numpy as np
 from numba import njit
 
@@ -14,6 +12,7 @@ from flymirage_core.rendering.cpu_kernels import (
     CENTRE_X,
     CENTRE_Y,
     FAST,
+    GAUSS,
     GREEN,
     LANES,
     LOWEST,
@@ -165,10 +164,9 @@ def shape_gradients(
     for i in range(count):
         n, p, s = ids[i], records[i], sums[i]
         # the conic: exponent -1/2 (qxx dx^2 + 2 qxy dx dy + qyy dy^2)
-        scale = F(-2 / (-0.5 * math.log2(math.e) / 8) * (-0.5))
-        qxx = p[X_CURVE] * scale
+        qxx = p[X_CURVE] / GAUSS
         qxy = -qxx * p[X_SLOPE]
-        qyy = p[Y_FALL] * scale + qxx * p[X_SLOPE] * p[X_SLOPE]
+        qyy = p[Y_FALL] / GAUSS + qxx * p[X_SLOPE] * p[X_SLOPE]
         gu, gv = qxx * s[5] + qxy * s[6], qxy * s[5] + qyy * s[6]
         # Q M Q
         mxx, mxy, myx, myy = (

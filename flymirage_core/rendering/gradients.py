@@ -28,18 +28,17 @@ class Gradients:
 
 def gradients(table: SplatTable, camera: Camera, target: Float32, scratch: Scratch) -> Gradients:
     """Of one view, ``target`` (H, W, 3) being what it should show, 1 = full."""
-    means, axes, opacities, file_indices, blocks, sh = table.arrays()
-    eye, height, width = packed(camera), *target.shape[:2]
-    count = cpu_kernels._project(means, axes, opacities, sh, blocks, eye, scratch.records, scratch.ids)
-    order = cpu_kernels._depth_order(scratch.records, scratch.ids, file_indices, count)
-    starts, lists = cpu_kernels._bin(scratch.records, order, width, height)
-    seen = np.empty((height, width, 3), np.float32)
-    plane = np.empty((2, height, width), np.float32)
+    eye = packed(camera)
+    starts, lists, count = cpu_kernels.binned(table.arrays(), eye, scratch.records, scratch.ids)
+    seen = np.empty_like(target)
+    plane = np.empty((2, *target.shape[:2]), np.float32)
     cpu_kernels._blend(scratch.records, starts, lists, seen, plane[0], plane[1])
     error = seen - target
     sums = np.empty((count, gradient_kernels.SUMS), np.float32)
     gradient_kernels.blame(scratch.records, starts, lists, seen, error, sums)
-    shapes = gradient_kernels.shape_gradients(means, axes, eye, scratch.records, scratch.ids, count, sums)  # (K, 9)
+    shapes = gradient_kernels.shape_gradients(
+        table.means, table.axes, eye, scratch.records, scratch.ids, count, sums
+    )  # (K, 9)
     rows = scratch.ids[:count].copy()
     squared = float(np.square(error, dtype=np.float64).sum())
     return Gradients(rows, sums, shapes, squared)

@@ -5,7 +5,7 @@ middle. A few hundred small pictures from where drones fly say better (Kerbl et 
 held). In steps of `BATCH` pictures: colours by the damped mean of what is missing, the rest by Adam.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -91,7 +91,8 @@ class Fit:
 
     @staticmethod
     def of(cloud: GaussianCloud) -> "Fit":
-        first, table = SplatTable.of(cloud), SplatTable.of(cloud)
+        first = SplatTable.of(cloud)
+        table = replace(first, **{name: getattr(first, name).copy() for name in ("means", "axes", "blocks", "sh")})
         table.blocks[:, 3] *= REACH
         n = len(table.file_indices)
         shape, means, squares = (np.zeros((n, 5), np.float32) for _ in range(3))
