@@ -11,6 +11,7 @@ networks say of worlds that they did not see (cross-validation by world).
 """
 
 import argparse
+import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -34,6 +35,8 @@ from flymirage_core.scene.knowledge import nouns
 from flymirage_core.scene.writer import OfflineSceneWriter
 from flymirage_core.settings import Settings
 
+Arrays = dict[str, np.ndarray]
+
 HOME = Path(__file__).parents[1] / "flymirage_core" / "annotation"
 FOLDS = 4  # of worlds; a network for each judges those that it was not trained on
 MIN_EXAMPLES = 2  # of a noun in training; rarer ones are not learned
@@ -41,12 +44,18 @@ NETWORKS = 3
 STEPS = 1200
 BATCH = 256
 HIDDEN = (128, 96)
+RATE = 3e-3  # of learning, at its highest
+LATER_RATE = 1e-3  # the same of what starts from a former recogniser
+NETWORK = tuple(
+    f"{layer}_{kind}" for layer in ("first", "second", "noun", "material") for kind in ("weights", "biases")
+)
+NO_CHANCE = -12.0  # logit of a class that a network does not know
 NOISE = 0.1  # standard deviations, on every feature
 SHOWN, SHOWN_LARGE = 26, 10  # nouns in a showroom: in a hall, in a yard
 LARGEST_IN_HALL = 2.8  # metres
 LEFT_OVER = ""  # the noun of a box that is no object of its own
 WANTED = {"noun": 0.90, "family": 0.88, "material": 0.85}  # of what is said on held-out worlds, so much must be right
-LEAST = 0.36  # probability; there are nouns that it never saw, which calibration knows too few of
+LEAST = 0.25  # probability; there are nouns that it never saw, which calibration knows too few of
 SEED = 1
 KINDS_OF_MATERIAL = {
     "wood": "oak walnut pine beech birch painted lacquered wood teak timber plywood cedar ash mahogany bamboo",
@@ -123,21 +132,24 @@ def showroom(key: str, wanted: Sequence[str]) -> SceneDescription:
 
 
 def collect_world(scene: Scene, folder: Path, settings: Settings) -> None:
-    """One file: features, nouns and materials of the boxes that the annotator makes of a world."""
+    """One file: features, nouns and materials of the boxes that the annotator makes of a world in both passes."""
     annotator = EmbeddedAnnotator(settings.annotation)
-    views = see_both_passes(scene, annotator, settings).all_views
-    found = [thing for thing, _ in annotator.observations(frames_of(views), settings.targets.near_distance)]
-    boxes = [thing.box for thing in found]
-    matches = {b: scene.truth[t] for t, b, _ in score_boxes(boxes, scene.truth, 0.25)}
-    nouns = [matches[b].noun if b in matches else opening_noun(box, scene.openings) for b, box in enumerate(boxes)]
-    materials = [kind_of_material(matches[b].material) if b in matches else "" for b in range(len(boxes))]
+    seen = see_both_passes(scene, annotator, settings)
+    features, nouns, materials = [], [], []
+    for views, distance in ((seen.orbit_views, math.inf), (seen.all_views, settings.targets.near_distance)):
+        found = [thing for thing, _ in annotator.observations(frames_of(views), distance)]
+        boxes = [thing.box for thing in found]
+        matches = {b: scene.truth[t] for t, b, _ in score_boxes(boxes, scene.truth, 0.25)}
+        features += [thing.features for thing in found]
+        nouns += [matches[b].noun if b in matches else opening_noun(x, scene.openings) for b, x in enumerate(boxes)]
+        materials += [kind_of_material(matches[b].material) if b in matches else "" for b in range(len(boxes))]
     np.savez_compressed(
         folder / f"{scene.name}.npz",
-        features=np.stack([thing.features for thing in found]),
+        features=np.stack(features),
         nouns=np.array(nouns),
         materials=np.array(materials),
     )
-    print(f"{scene.name}: {len(boxes)} boxes, {len(matches)} matched", flush=True)
+    print(f"{scene.name}: {len(nouns)} boxes, {sum(noun != LEFT_OVER for noun in nouns)} with names", flush=True)
 
 
 def opening_noun(box: object, openings: Sequence[np.ndarray]) -> str:
@@ -170,25 +182,39 @@ def family_of(noun: str, nouns: Sequence[str]) -> str:
     return head if len(alike) > 1 else noun
 
 
-def train(examples: Examples, count: int) -> dict[str, np.ndarray]:
-    """The arrays of recogniser.npz, for ``count`` networks; thresholds still to be set."""
+def train(examples: Examples, count: int, former: Arrays | None = None) -> Arrays:
+    """The arrays of recogniser.npz, for ``count`` networks; thresholds still to be set.
+
+    ``former``: those of a recogniser that learned from worlds which are not at hand. Its networks stay, lest what they
+    know is forgotten, and beside each one begins where it stood and learns on. Its features are the last of today's.
+    """
     counts = Counter(examples.nouns.tolist())
-    nouns = sorted(n for n, count in counts.items() if n != LEFT_OVER and count >= MIN_EXAMPLES)
-    materials = sorted(set(examples.materials.tolist()) - {""})
+    known_before = set(former["nouns"].tolist()) if former else set()
+    nouns = sorted({n for n, k in counts.items() if n != LEFT_OVER and k >= MIN_EXAMPLES} | known_before)
+    materials = sorted((set(examples.materials.tolist()) - {""}) | set(former["materials"].tolist() if former else ()))
     known = np.isin(examples.nouns, [*nouns, LEFT_OVER])
     examples = examples[known]
     noun_index = {n: i for i, n in enumerate([*nouns, LEFT_OVER])}
     material_index = {m: i for i, m in enumerate(materials)} | {"": -100}
     x = examples.features
     mean, scale = x.mean(axis=0), x.std(axis=0) + 0.05
+    if former:
+        mean[-len(former["mean"]) :], scale[-len(former["scale"]) :] = former["mean"], former["scale"]
     turned = np.concatenate([x, mirrored(x), reversed_depth(x), reversed_depth(mirrored(x))])
     inputs = torch.from_numpy(np.clip((turned - mean) / scale, -CLIP, CLIP).astype(np.float32))
     noun_targets = torch.tensor([noun_index[n] for n in examples.nouns]).repeat(4)
     material_targets = torch.tensor([material_index[m] for m in examples.materials]).repeat(4)
-    networks = [
-        _network(inputs, noun_targets, material_targets, (len(nouns) + 1, len(materials)), SEED + k)
-        for k in range(count)
-    ]
+    networks = []
+    for k in range(count):
+        torch.manual_seed(SEED + k)
+        layers = _layers(len(nouns) + 1, len(materials))
+        if former:
+            weights = {name: former[name][k % len(former[name])] for name in NETWORK}
+            _begin_with(layers, weights, former, nouns, materials)
+            networks.append(_weights(layers))
+        networks.append(
+            _weights(_trained(layers, inputs, noun_targets, material_targets, LATER_RATE if former else RATE))
+        )
     arrays = {name: np.stack([n[name] for n in networks]).astype(np.float16) for name in networks[0]}
     families = [family_of(n, nouns) for n in nouns]
     return arrays | {
@@ -201,30 +227,59 @@ def train(examples: Examples, count: int) -> dict[str, np.ndarray]:
     }
 
 
-def _network(
-    x: torch.Tensor, nouns: torch.Tensor, materials: torch.Tensor, classes: tuple[int, int], seed: int
-) -> dict[str, np.ndarray]:
-    torch.manual_seed(seed)
-    first, second = nn.Linear(FEATURES, HIDDEN[0]), nn.Linear(*HIDDEN)
-    heads = nn.Linear(HIDDEN[1], classes[0]), nn.Linear(HIDDEN[1], classes[1])
+def _layers(nouns: int, materials: int) -> dict[str, nn.Linear]:
+    return {
+        "first": nn.Linear(FEATURES, HIDDEN[0]),
+        "second": nn.Linear(*HIDDEN),
+        "noun": nn.Linear(HIDDEN[1], nouns),
+        "material": nn.Linear(HIDDEN[1], materials),
+    }
+
+
+@torch.no_grad()
+def _begin_with(
+    layers: dict[str, nn.Linear], weights: Arrays, former: Arrays, nouns: Sequence[str], materials: Sequence[str]
+) -> None:
+    """Put a former network's weights in: what was no feature of it has no weight, what was no class of it no chance."""
+    rows = {
+        "first": np.arange(HIDDEN[0]),
+        "second": np.arange(HIDDEN[1]),
+        "noun": np.array([*(nouns.index(n) for n in former["nouns"]), len(nouns)]),
+        "material": np.array([materials.index(m) for m in former["materials"]]),
+    }
+    for name, layer in layers.items():
+        old = torch.from_numpy(weights[f"{name}_weights"].astype(np.float32).T)
+        layer.weight.zero_()
+        layer.bias.fill_(NO_CHANCE)
+        layer.weight[rows[name], -old.shape[1] :] = old
+        layer.bias[rows[name]] = torch.from_numpy(weights[f"{name}_biases"].astype(np.float32)[0])
+
+
+def _trained(
+    layers: dict[str, nn.Linear], x: torch.Tensor, nouns: torch.Tensor, materials: torch.Tensor, rate: float
+) -> dict[str, nn.Linear]:
+    first, second, noun, material = layers.values()
     body = nn.Sequential(nn.Dropout(0.2), first, nn.ReLU(), nn.Dropout(0.3), second, nn.ReLU(), nn.Dropout(0.2))
-    parameters = [p for module in (body, *heads) for p in module.parameters()]
-    optimiser = torch.optim.AdamW(parameters, lr=3e-3, weight_decay=0.03)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, 3e-3, total_steps=STEPS)
+    parameters = [p for module in (body, noun, material) for p in module.parameters()]
+    optimiser = torch.optim.AdamW(parameters, lr=rate, weight_decay=0.03)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimiser, rate, total_steps=STEPS)
     noun_loss, material_loss = nn.CrossEntropyLoss(label_smoothing=0.05), nn.CrossEntropyLoss(label_smoothing=0.05)
     for _ in range(STEPS):
         rows = torch.randint(len(x), (BATCH,))
         hidden = body(x[rows] + NOISE * torch.randn(BATCH, FEATURES))
-        loss = noun_loss(heads[0](hidden), nouns[rows])
+        loss = noun_loss(noun(hidden), nouns[rows])
         if (materials[rows] >= 0).any():
-            loss = loss + 0.5 * material_loss(heads[1](hidden), materials[rows])
+            loss = loss + 0.5 * material_loss(material(hidden), materials[rows])
         optimiser.zero_grad()
         loss.backward()
         optimiser.step()
         schedule.step()
-    layers = {"first": first, "second": second, "noun": heads[0], "material": heads[1]}
-    weights = {f"{name}_weights": layer.weight.detach().numpy().T for name, layer in layers.items()}
-    return weights | {f"{name}_biases": layer.bias.detach().numpy()[None] for name, layer in layers.items()}
+    return layers
+
+
+def _weights(layers: dict[str, nn.Linear]) -> Arrays:
+    weights = {f"{name}_weights": layer.weight.detach().numpy().T.copy() for name, layer in layers.items()}
+    return weights | {f"{name}_biases": layer.bias.detach().numpy()[None].copy() for name, layer in layers.items()}
 
 
 @dataclass(frozen=True)
@@ -261,13 +316,13 @@ def judge(recogniser: Recogniser, features: np.ndarray) -> Judged:
     )
 
 
-def judged_unseen(examples: Examples) -> Judged:
+def judged_unseen(examples: Examples, former: Arrays | None) -> Judged:
     """What networks that were not trained on a box's world think of it; in the order of the examples."""
     worlds = np.unique(examples.worlds)
     fold = np.searchsorted(worlds, examples.worlds) % FOLDS
     order = np.argsort(fold, kind="stable")
     answers = [
-        judge(recogniser_of(train(examples[fold != k], 1)), examples.features[fold == k])
+        judge(recogniser_of(train(examples[fold != k], 1, former)), examples.features[fold == k])
         for k in range(FOLDS)
         if (fold == k).any()
     ]
@@ -358,6 +413,7 @@ def main() -> None:
         commands.add_parser(name).add_argument("--data", type=Path, required=True)
     commands.choices["collect"].add_argument("worlds", nargs="+")
     commands.choices["showrooms"].add_argument("--count", type=int, default=6)
+    commands.choices["train"].add_argument("--former", type=Path, help="recogniser.npz to keep and to go on from")
     arguments = parser.parse_args()
     torch.set_num_threads(1)
     torch.use_deterministic_algorithms(True)
@@ -368,8 +424,9 @@ def main() -> None:
         collect_showrooms(arguments.count, arguments.data, Settings())
         return
     examples = load(arguments.data)
-    judged = judged_unseen(examples)
-    arrays = train(examples, NETWORKS)
+    former = dict(np.load(arguments.former)) if arguments.former else None
+    judged = judged_unseen(examples, former)
+    arrays = train(examples, NETWORKS, former)
     arrays["thresholds"] = calibrated(judged, examples)
     np.savez_compressed(HOME / "recogniser.npz", **arrays)
     size = (HOME / "recogniser.npz").stat().st_size

@@ -18,6 +18,7 @@ from flymirage_core.annotation.labels import Support, green
 from flymirage_core.annotation.light import Light, seen_colour
 from flymirage_core.annotation.normals import surface_shape
 from flymirage_core.annotation.room_structure import RoomStructure
+from flymirage_core.annotation.surroundings import FEATURES as SURROUNDINGS
 
 Float32 = NDArray[np.float32]
 
@@ -46,7 +47,7 @@ _GEOMETRY: Final = 13 + len(Support)
 _COLOUR: Final = 13
 _CROP_COLOURS: Final = CROP_CELLS**2 * 4
 _EDGES: Final = EDGE_CELLS**2 * EDGE_ANGLES
-FEATURES: Final = _SHAPE + _SLABS * 8 + _GEOMETRY + _COLOUR + _CROP_COLOURS + _EDGES
+FEATURES: Final = SURROUNDINGS + _SHAPE + _SLABS * 8 + _GEOMETRY + _COLOUR + _CROP_COLOURS + _EDGES
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,14 +73,17 @@ def observe(
     light: Light,
     frames: Sequence[Frame],
     views: Sequence[int],
+    around: Float32,
 ) -> Observation:
-    """Measure a box: ``light`` is the place's, ``views`` are the frames that show most of it, best first."""
+    """Measure a box: ``light`` is the place's, ``views`` are the frames that show most of it, best first, and
+    ``around`` is its row of `surroundings`."""
     points = cloud.points[box.members]
     lab = to_lab(cloud.colours[box.members])  # (M, 3)
     normals, variation = surface_shape(points, cloud.to_camera[box.members], NEIGHBOURHOOD, NEIGHBOURS)
     local, half = _in_box(box, points)
     features = np.concatenate(
         [
+            around,
             _shape_grid(local, half).ravel(),
             _slabs(local, lab, normals, variation).ravel(),
             _geometry(box, support, structure, len(points)),
@@ -96,7 +100,7 @@ def observe(
 def mirrored(features: Float32) -> Float32:
     """Features (N, FEATURES) of the same things seen in a mirror: for training on more than there is."""
     out = features.copy()
-    grid = out[:, :_SHAPE].reshape(-1, *SHAPE_CELLS)
+    grid = out[:, SURROUNDINGS : SURROUNDINGS + _SHAPE].reshape(-1, *SHAPE_CELLS)
     grid[:] = grid[:, ::-1].copy()
     first = FEATURES - _EDGES - _CROP_COLOURS
     crops = out[:, first : FEATURES - _EDGES].reshape(-1, CROP_CELLS, CROP_CELLS, 4)
@@ -109,7 +113,7 @@ def mirrored(features: Float32) -> Float32:
 def reversed_depth(features: Float32) -> Float32:
     """Features (N, FEATURES) of things whose shape is turned front to back."""
     out = features.copy()
-    grid = out[:, :_SHAPE].reshape(-1, *SHAPE_CELLS)
+    grid = out[:, SURROUNDINGS : SURROUNDINGS + _SHAPE].reshape(-1, *SHAPE_CELLS)
     grid[:] = grid[:, :, ::-1].copy()
     return out
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.annotation.fusion import convex_overlap, footprint_corners, footprint_overlap
-from flymirage_core.annotation.room_structure import RoomStructure
+from flymirage_core.annotation.room_structure import RoomStructure, Wall
 
 Float32 = NDArray[np.float32]
 Float64 = NDArray[np.float64]
@@ -18,6 +18,10 @@ TRIM: Final = 0.6
 HEIGHT_TRIM: Final = 0.5
 SNAP: Final = 1.08
 """The room's own direction is taken if its rectangle is at most this much larger than the smallest."""
+HUGGED: Final = 1.4
+"""... or at most this much, if the points are nearer to its sides ..."""
+CLOSER: Final = 0.7
+"""... by this factor: of a cabinet two faces are seen, and its diagonal makes as small a rectangle."""
 SURFACE_MARGIN: Final = 0.03
 """Metres added to both sides when areas are compared, so that thin things have one."""
 MAX_FIT_POINTS: Final = 4000
@@ -44,12 +48,6 @@ MAX_WALL_GAP: Final = 0.15
 """Metres to a wall that are taken to belong to the thing: its back is not seen."""
 MAX_CARRIED_GAP: Final = 0.075
 """... for what stands on another thing: no more than what is culled with the wall."""
-MAX_TALL_WALL_GAP: Final = 0.75
-MAX_TALL_DEPTH: Final = 0.85
-TALL: Final = 1.35
-"""Things that reach higher above the floor are seen from the front only, so their depth is guessed up to the wall."""
-SEEN_DEPTH: Final = 0.25
-"""... but only where less than this of their depth was seen."""
 ONE_SIDED: Final = 0.8
 """Length of the mean horizontal direction to the cameras from which a thing was seen from one side only."""
 MAX_ONE_SIDED: Final = 0.7
@@ -60,6 +58,8 @@ MAX_CORD: Final = 0.6
 """Metres of cord, seen or too thin to be, that count as a part of a lamp; in high rooms cords are longer ..."""
 MAX_LAMP_SIDE: Final = 0.8
 """... and what is longer than this, trays and beams, has none."""
+MIN_LAMP_SHAPE: Final = 0.4
+"""Width over length; flat signs have no cord."""
 CORD: Final = 0.12
 """Metres; as thin as that are the slices of a cord ..."""
 CORD_SLICE: Final = 0.06
@@ -142,7 +142,14 @@ def fit_footprint(points: Float32, room_yaw: float, trim: float = TRIM) -> Footp
     coarse = min((_rectangle(xy, a, trim) for a in COARSE_YAWS), key=_padded_area)
     near = coarse.yaw + FINE_YAWS
     best = min((_rectangle(xy, a % (np.pi / 2), trim) for a in near), key=_padded_area)
-    return snapped if _padded_area(snapped) < SNAP * _padded_area(best) else best
+    ratio = _padded_area(snapped) / _padded_area(best)
+    hugged = ratio < HUGGED and _from_sides(snapped, xy) < CLOSER * _from_sides(best, xy)
+    return snapped if ratio < SNAP or hugged else best
+
+
+def _from_sides(footprint: Footprint, xy: Float64) -> float:
+    """Mean distance of points (N, 2) from the nearest side: two faces that meet in a corner hug the true sides."""
+    return float(np.abs(footprint.size / 2 - np.abs(footprint.local(xy))).min(axis=1).mean())
 
 
 def _rectangle(xy: Float64, yaw: float, trim: float) -> Footprint:
@@ -190,7 +197,7 @@ def fit_box(
         members,
         hanging=len(members) < seen,
     )
-    return _reaching_wall(box, structure, max_wall_gap, tall=top - floor > TALL and bottom <= floor)
+    return _reaching_wall(box, structure, max_wall_gap)
 
 
 def _without_cord(points: Float32, members: NDArray[np.intp], structure: RoomStructure) -> NDArray[np.intp]:
@@ -224,22 +231,30 @@ def _with_unseen_half(plan: Footprint, to_camera: Float32) -> Footprint:
     return Footprint(plan.centre - shift, size, plan.yaw)
 
 
-def _reaching_wall(box: FittedBox, structure: RoomStructure, max_gap: float, tall: bool) -> FittedBox:
+def _reaching_wall(box: FittedBox, structure: RoomStructure, max_gap: float) -> FittedBox:
     """The box grown to walls right behind it, its unseen back."""
     for wall in structure.walls_at(box.centre):
-        for axis in (0, 1):
-            angle = box.yaw + axis * np.pi / 2
-            if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) < PARALLEL:
-                continue
-            depth = box.size[axis]
-            gap = float(np.dot(wall.normal, box.centre[:2])) - wall.back - depth / 2
-            guessed = tall and depth < SEEN_DEPTH and depth + gap < MAX_TALL_DEPTH
-            if MIN_GAP < gap < (MAX_TALL_WALL_GAP if guessed else max_gap):
-                size = list(box.size)
-                size[axis] += gap
-                x, y = np.array(box.centre[:2]) - wall.normal * gap / 2
-                box = replace(box, centre=(float(x), float(y), box.centre[2]), size=(size[0], size[1], size[2]))
+        behind = gap_to_wall(box, wall)
+        if behind is not None and MIN_GAP < behind[1] < max_gap:
+            box = grown_to_wall(box, wall, *behind)
     return box
+
+
+def gap_to_wall(box: FittedBox, wall: Wall) -> tuple[int, float] | None:
+    """The axis of the box that runs towards a wall, and the metres between the two; None where none does."""
+    for axis in (0, 1):
+        angle = box.yaw + axis * np.pi / 2
+        if abs(np.cos(angle) * wall.normal[0] + np.sin(angle) * wall.normal[1]) >= PARALLEL:
+            return axis, float(np.dot(wall.normal, box.centre[:2])) - wall.back - box.size[axis] / 2
+    return None
+
+
+def grown_to_wall(box: FittedBox, wall: Wall, axis: int, gap: float) -> FittedBox:
+    """The box, longer along ``axis`` by the ``gap`` metres between it and the wall."""
+    size = list(box.size)
+    size[axis] += gap
+    x, y = np.array(box.centre[:2]) - wall.normal * gap / 2
+    return replace(box, centre=(float(x), float(y), box.centre[2]), size=(size[0], size[1], size[2]))
 
 
 def settle(boxes: Sequence[FittedBox], structure: RoomStructure, faces: Sequence[LevelFace]) -> list[FittedBox]:
@@ -296,8 +311,9 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
     if not on_wall and gap > MAX_WALL_DROP and box.bottom - floor > MIN_HANGING and structure.ceiling_map is not None:
         ceiling = float(structure.ceiling_map.at(np.array([box.centre[:2]]))[0])
         if ceiling - box.top < UNDER_CEILING:
-            short = ceiling - box.top < MAX_CORD and max(box.size[:2]) < MAX_LAMP_SIDE
-            return replace(_between(box, box.bottom, ceiling) if short else box, hanging=True)
+            lamp = max(box.size[:2]) < MAX_LAMP_SIDE and min(box.size[:2]) > MIN_LAMP_SHAPE * max(box.size[:2])
+            cord = min(ceiling - box.top, MAX_CORD) if lamp else 0.0
+            return replace(_between(box, box.bottom, box.top + cord), hanging=True)
     if gap <= MIN_GAP or gap >= MAX_SUPPORT_GAP or (on_wall and gap > MAX_WALL_DROP):
         return box
     return _between(box, box.bottom - gap, box.top)

@@ -29,14 +29,25 @@ MIN_SUPPORT_POINTS: Final = 5
 
 def solid(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
     """(N,) True for points (N, 3) that at least `MIN_HITS` frames hit, and no fewer than see through them."""
-    votes = np.zeros((len(points), 2), np.int32)  # hits, seen through
+    votes = _votes(points, frames)
+    return np.asarray((votes[:, 0] >= min(MIN_HITS, len(frames))) & (votes[:, 1] <= votes[:, 0]))
+
+
+def hidden(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
+    """(N,) True for places (N, 3) that no frame sees through: something may be there."""
+    return np.asarray(_votes(points, frames)[:, 1] == 0)
+
+
+def _votes(points: Float32, frames: Sequence[Frame]) -> NDArray[np.int32]:
+    """(N, 2) frames that hit each point (N, 3), and that see through it."""
+    votes = np.zeros((len(points), 2), np.int32)
     if len(points):
         blocks = np.floor(points / BLOCK).astype(np.int64)
         groups = _Groups.of(points, np.unique(blocks, axis=0, return_inverse=True)[1].reshape(-1))
         for frame in frames:
             _vote(groups.points, groups.starts, groups.shown_in(frame), frame.depth, *_projection(frame), votes)
         votes[groups.order] = votes.copy()
-    return np.asarray((votes[:, 0] >= min(MIN_HITS, len(frames))) & (votes[:, 1] <= votes[:, 0]))
+    return votes
 
 
 @dataclass(frozen=True, eq=False)

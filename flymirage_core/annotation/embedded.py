@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.annotation.appearance import Observation, observe, window_of
+from flymirage_core.annotation.backs import with_backs
 from flymirage_core.annotation.box_fitting import (
     MAX_CARRIED_GAP,
     MAX_WALL_GAP,
@@ -23,10 +24,12 @@ from flymirage_core.annotation.box_fitting import (
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.annotation.carving import Detections, detections, solid
 from flymirage_core.annotation.colours import colour_step, shading_free, to_lab
+from flymirage_core.annotation.crowns import with_crowns
 from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import Support
 from flymirage_core.annotation.light import light_of
+from flymirage_core.annotation.lying import floor_regions, lying_on, on_plates, rugs
 from flymirage_core.annotation.merging import merge_parts
 from flymirage_core.annotation.naming import Name, is_bare_front, is_believed, named
 from flymirage_core.annotation.normals import surface_normals
@@ -43,6 +46,7 @@ from flymirage_core.annotation.segmentation import (
     smoothed_colours,
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
+from flymirage_core.annotation.surroundings import surroundings
 from flymirage_core.annotation.tops import take_off_tops
 from flymirage_core.annotation.wall_objects import ceiling_objects, wall_objects
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
@@ -77,7 +81,7 @@ FULL_EVIDENCE: Final = 12
 class EmbeddedAnnotator:
     """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
 
-    version = "7"
+    version = "8"
 
     def __init__(self, settings: AnnotationSettings, detector: YoloxDetector | None = None) -> None:
         self.settings = settings
@@ -118,33 +122,37 @@ class EmbeddedAnnotator:
 
         ``pictures``: what a 2D detector found in each frame, if there is one.
         """
-        structure = self.structure(frames)
+        structure, place = self.structure(frames)
         cloud = fuse_points(frames, self.settings.voxel, min(max_distance, FARTHEST) + HALF_AN_OBJECT)
         cloud = _solid_cloud(cloud, structure, frames)
-        boxes = propose_boxes(cloud, structure, self.settings.voxel)
+        boxes = with_backs(propose_boxes(cloud, structure, self.settings.voxel), structure, frames)
+        boxes = with_crowns(boxes, place, structure)
         if pictures:
             boxes = join_pieces(boxes, cloud, structure, frames, pictures)
         support = detections(cloud.points, boxes, frames, max_distance)
         seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
         rivals = [box for box, _ in seen]
         light = light_of(cloud.colours)
+        plain = shading_free(to_lab(cloud.colours))
+        building = structure.contains(cloud.points)
+        around = surroundings(rivals, [found for _, found in seen], cloud.points, plain, building)
         observed = []
-        for box, found in seen:
+        for (box, found), row in zip(seen, around, strict=True):
             views = best_views(box, found.hits, frames)
-            thing = observe(box, support_of(box, rivals, structure), cloud, structure, light, frames, views)
+            thing = observe(box, support_of(box, rivals, structure), cloud, structure, light, frames, views, row)
             observed.append((thing, found))
         return observed
 
-    def structure(self, frames: Sequence[Frame]) -> RoomStructure:
-        """The building, from a coarse cloud of views spread over the sequence."""
+    def structure(self, frames: Sequence[Frame]) -> tuple[RoomStructure, Float32]:
+        """The building, and the coarse cloud (N, 3) of views spread over the sequence that it was found in."""
         step = max(1, len(frames) // STRUCTURE_FRAMES)
         cloud = fuse_points(frames[::step], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         square = fuse_points([square_only(frame) for frame in frames[::step]], STRUCTURE_VOXEL, STRUCTURE_RANGE)
         normals = surface_normals(cloud.points, cloud.to_camera, NORMAL_RADIUS * STRUCTURE_VOXEL, STRUCTURE_NEIGHBOURS)
         if sees_sky(frames[::step]):
             eyes = np.array([frame.camera.position for frame in frames])
-            return find_open_air(cloud.points, normals, square.points, eyes)
-        return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL)
+            return find_open_air(cloud.points, normals, square.points, eyes), cloud.points
+        return find_structure(cloud.points, normals, square.points, STRUCTURE_VOXEL), cloud.points
 
 
 def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
@@ -164,8 +172,12 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     boxes = settle(_fitted(parts, objects, cloud, structure), structure, faces)
     boxes = [box for box in boxes if is_thing(box, structure)]
     colours = shading_free(to_lab(cloud.colours))
+    regions = floor_regions(cloud.points, colours, structure)
+    building = structure.contains(cloud.points)
+    boxes = on_plates(boxes, cloud.points, colours, building, structure)
     boxes += wall_objects(cloud.points, colours, flat, structure) + ceiling_objects(cloud.points, colours, structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)
+    boxes += rugs(regions, boxes, structure) + lying_on(faces, boxes, cloud.points, colours, building)
     return sorted(boxes, key=lambda b: (round(b.bottom, 2), b.centre))
 
 

@@ -24,7 +24,7 @@ HALF_VOTE: Final = 1.5
 
 MAX_LEFT_OVER: Final = 0.75
 """Probability of being no object of its own from which a box that the detector does not know is dropped."""
-MAX_LEFT_OVER_NAMELESS: Final = 0.6
+MAX_LEFT_OVER_NAMELESS: Final = 0.72
 """The same of a box that nobody has a name for."""
 BULKY: Final = 0.4
 """Metres; unless it is as thick as this ..."""
@@ -39,12 +39,14 @@ LEAST_UNNAMED: Final = (0.10, 0.15)
 what is thinner is a slat, a frame, a strip."""
 MIN_VIEWS: Final = 4
 """Views that must have seen a thing that nobody has a name for, ..."""
-SURELY_A_THING: Final = 0.3
-"""... unless it is no left-over for all that the recogniser knows."""
+SURELY_A_THING: Final = 0.5
+"""... unless it is no left-over for all that the recogniser knows; so may be what is thin."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 PILLAR: Final = (2.2, 0.8)
-"""Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post."""
+"""Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post ..."""
+LIKE_A_PILLAR: Final = 0.4
+"""... from this left-over probability on."""
 BARE_FRONT: Final = (0.05, 0.35)
 """Metres of relief up to which only a face flush with its wall was seen of a thing above the floor, and the left-over
 probability from which that is a panel of the wall, a headboard behind pillows, if nobody has a name for it."""
@@ -83,10 +85,13 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
     if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
-    if name.noun == UNKNOWN and _is_pillar(box):
+    if name.noun != UNKNOWN:
+        return True
+    panel = box.on_wall and longest > PANEL
+    if panel or (_is_pillar(box) and name.left_over >= LIKE_A_PILLAR):
         return False
-    slat = second < LEAST_UNNAMED[1] or (longest > PANEL if box.on_wall else thin < LEAST_UNNAMED[0])
-    return name.noun != UNKNOWN or not (slat or (seen.views < MIN_VIEWS and name.left_over > SURELY_A_THING))
+    slat = second < LEAST_UNNAMED[1] or (thin < LEAST_UNNAMED[0] and not box.on_wall)
+    return name.left_over < SURELY_A_THING or not (slat or seen.views < MIN_VIEWS)
 
 
 def is_bare_front(thing: Observation, name: Name) -> bool:

@@ -15,6 +15,8 @@ Index = NDArray[np.intp]
 
 TABLE_BIN = 0.04
 """Metres; heights within two bins are one level face."""
+TOP_SHARE = 0.4
+"""Of the broadest face's area, that a top has at least."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,18 +83,32 @@ class Part:
         return fit_footprint(self.points, self.surface.yaw)
 
     @cached_property
-    def table(self) -> tuple[float, float]:
-        """Its broadest level face that looks up: (square metres, upper edge of its height)."""
+    def _levels(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(K,) square metres of level surface that looks up, and the upper edge of its height."""
         up = self.members[self.surface.normals[self.members, 2] > LEVEL]
         if len(up) < 6:
-            return 0.0, float("-inf")
+            return np.zeros(1), np.full(1, -np.inf)
         heights = self.surface.points[up, 2]
         counts, edges = np.histogram(
             heights, np.arange(heights.min() - TABLE_BIN, heights.max() + 2 * TABLE_BIN, TABLE_BIN)
         )
         pairs = counts + np.append(counts[1:], 0)
-        k = int(pairs.argmax())
-        return float(pairs[k]) * self.surface.voxel**2, float(edges[k]) + TABLE_BIN
+        return pairs * self.surface.voxel**2, edges[:-1] + TABLE_BIN
+
+    @property
+    def table(self) -> tuple[float, float]:
+        """Its broadest level face that looks up: (square metres, upper edge of its height)."""
+        areas, heights = self._levels
+        k = int(areas.argmax())
+        return float(areas[k]), float(heights[k])
+
+    @property
+    def top(self) -> tuple[float, float]:
+        """Its highest level face of some breadth: of a bookcase the uppermost board, of which things hide much."""
+        areas, heights = self._levels
+        k = int(np.flatnonzero(areas >= TOP_SHARE * areas.max())[-1])
+        k -= int(k > 0 and areas[k - 1] > areas[k])  # two bins overlap: the fuller of both
+        return float(areas[k]), float(heights[k])
 
 
 class PartSet:

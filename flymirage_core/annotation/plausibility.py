@@ -16,8 +16,8 @@ Float32 = NDArray[np.float32]
 MIN_OBJECT_POINTS: Final = 25
 LONGEST: Final = 4.5
 """Metres; larger things are a part of the building that was not recognised ..."""
-LONGEST_OUTDOORS: Final = 6.0
-"""... and under an open sky, where vans stand, of the place."""
+LONGEST_OUTDOORS: Final = 6.5
+"""... and under an open sky, where vans and containers stand, of the place."""
 SHORTEST: Final = 0.08
 """Metres; a box whose longest side is less is noise."""
 HIGH: Final = 1.9
@@ -29,6 +29,8 @@ TRIM_DEPTH: Final = 0.2
 """Metres that trim stands out from its wall at most; balconies, window boxes and lamps reach farther."""
 TRIM_GAP: Final = 0.15
 """Metres to a wall or to the ceiling within which a high thing is fixed to it."""
+MAX_BRACKET: Final = 0.6
+"""Metres to a house front that a dish or a sign is held away from it, or that its back is hidden."""
 LEDGE_HEIGHT: Final = 0.12
 LEDGE_RATIO: Final = 5.0
 """Length against depth from which a flat thing at a wall is a sill or a skirting board."""
@@ -88,7 +90,7 @@ def _is_trim(box: FittedBox, clearance: float, structure: RoomStructure) -> bool
     """High up at a wall, or flat up there, or with nothing above to hang from; what hangs freely is not."""
     depth = min(box.size[:2])
     at_wall = structure.wall_gap(box.centre, depth) < TRIM_GAP
-    afloat = structure.ceiling is None and not at_wall
+    afloat = structure.ceiling is None and structure.wall_gap(box.centre, depth) > MAX_BRACKET
     high = HIGH if structure.ceiling is None else max(HIGH, structure.ceiling - structure.floor - CEILING_TRIM)
     flat = box.size[2] < TRIM_HEIGHT or (at_wall and depth < TRIM_DEPTH)
     return clearance > high and not box.hanging and (flat or afloat)

@@ -63,7 +63,9 @@ BACK_PERCENTILE: Final = 25
 MIN_SQUARE_POINTS: Final = 50
 MAP_CELL: Final = 0.15
 """Metres; cells of the floor's and ceiling's height maps, which follow rugs, steps and coffers."""
-FLOOR_RELIEF: Final = 0.14
+SEEN_TOO_HIGH: Final = 0.018
+"""Metres by which level surfaces are seen too high: of splats the nearer ones hide the others."""
+FLOOR_RELIEF: Final = 0.09
 """Metres by which the floor may rise (rugs, a step) or fall."""
 CEILING_RELIEF: Final = 0.7
 MAX_YAW_SAMPLES: Final = 20_000
@@ -208,7 +210,8 @@ def find_structure(points: Float32, normals: Float32, square: Float32, voxel: fl
         )
     relief = floor_relief(points, normals, floor, FLOOR_RELIEF)
     top = relief.raised(FLOOR_CLEARANCE)
-    return RoomStructure(floor, ceiling, float(yaw % (np.pi / 2)), tuple(walls), relief, top, ceiling_map)
+    ground = relief.raised(-SEEN_TOO_HIGH)
+    return RoomStructure(floor, ceiling, float(yaw % (np.pi / 2)), tuple(walls), ground, top, ceiling_map)
 
 
 def room_yaw(points: Float32, normals: Float32) -> float:

@@ -37,7 +37,7 @@ MAX_RIMS: Final = 2
 def take_off_tops(parts: PartSet) -> None:
     """Make things that stand on a part parts of their own."""
     for i, part in sorted(parts.parts.items()):
-        area, height = part.table
+        area, height = part.top
         if not part.thing and area >= MIN_FACE_AREA and height > parts.surface.floor + ABOVE_SEATS:
             for members in _on_top(part, height, NEIGHBOURS * parts.surface.voxel):
                 parts.split(i, members)

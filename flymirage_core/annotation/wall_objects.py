@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.colours import colour_step
-from flymirage_core.annotation.room_structure import RoomStructure, Wall
+from flymirage_core.annotation.room_structure import HeightMap, RoomStructure, Wall
 
 Float32 = NDArray[np.float32]
 Float64 = NDArray[np.float64]
@@ -23,6 +23,10 @@ MAX_DEPTH: Final = 0.07
 """Metres behind the wall's plane, or below the ceiling's."""
 MAX_CEILING_DEPTH: Final = 0.12
 """Metres below the ceiling; what reaches lower hangs."""
+AROUND: Final = 13
+"""Cells (2 m) of the ceiling's map, of whose heights ..."""
+HIGH: Final = 80
+"""... this percentile is the ceiling round a light, which the map itself follows."""
 MAX_LIGHT: Final = 2.0
 MIN_POINTS: Final = 200
 """Of a wall or ceiling, for it to be looked at."""
@@ -42,6 +46,8 @@ MAX_SHORT_SIDE: Final = 2.0
 """Metres; what is larger both ways is a part of the wall."""
 MIN_FILL: Final = 0.55
 """Least share of the bounding rectangle: flat things are rectangles or discs, shadows are not."""
+MIN_LINE: Final = 0.35
+"""Of the median line's cells, that the outermost lines of a thing have; fewer are those of a shadow that joins it."""
 MIN_HEIGHT: Final = 0.25
 """Metres above the floor; lower down it is a skirting board, or the colour of furniture on the wall behind it."""
 MIN_TALL: Final = 1.6
@@ -71,7 +77,10 @@ def ceiling_objects(points: Float32, colours: Float32, structure: RoomStructure)
     """Boxes of flat things under the ceiling that differ from it in colour: light panels, vents; arguments as above."""
     if structure.ceiling_map is None:
         return []
-    depth = structure.ceiling_map.at(points) - points[:, 2]
+    around = HeightMap(
+        structure.ceiling_map.origin, ndimage.percentile_filter(structure.ceiling_map.heights, HIGH, AROUND)
+    )
+    depth = around.at(points) - points[:, 2]
     members = np.flatnonzero((depth < MAX_CEILING_DEPTH) & (depth > -MAX_DEPTH))
     if len(members) < MIN_POINTS:
         return []
@@ -79,7 +88,7 @@ def ceiling_objects(points: Float32, colours: Float32, structure: RoomStructure)
     axes = np.array([[c, s], [-s, c]])
     along, across = (points[members, :2] @ axis for axis in axes)
     boxes = []
-    for mine, (x, y), (w, h) in _flat_things(along, across, depth[members], colours[members]):
+    for mine, (x, y), (w, h) in flat_things(along, across, depth[members], colours[members]):
         if min(w, h) < MIN_SIDE or max(w, h) > MAX_LIGHT:
             continue
         xy = np.array([x + w / 2, y + h / 2]) @ axes
@@ -94,8 +103,8 @@ def ceiling_objects(points: Float32, colours: Float32, structure: RoomStructure)
 def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Float32, floor: float) -> list[FittedBox]:
     along, depth = points[:, :2] @ wall.direction, wall.distance(points)
     boxes = []
-    for mine, (x, bottom), (w, h) in _flat_things(along, points[:, 2], depth, colours):
-        if min(w, h) > MAX_SHORT_SIDE or (bottom - floor < MIN_HEIGHT and h < MIN_TALL):
+    for mine, (x, bottom), (w, h) in flat_things(along, points[:, 2], depth, colours):
+        if not MIN_SIDE <= min(w, h) <= MAX_SHORT_SIDE or (bottom - floor < MIN_HEIGHT and h < MIN_TALL):
             continue
         front = wall.offset + float(np.percentile(depth[mine], FRONT_PERCENTILE))
         thickness = max(MIN_THICKNESS, front - wall.back)
@@ -106,23 +115,36 @@ def _on_wall(wall: Wall, members: NDArray[np.intp], points: Float32, colours: Fl
     return boxes
 
 
-def _flat_things(
-    x: Float64 | Float32, y: Float64 | Float32, depth: Float64, colours: Float32
+def flat_things(
+    x: Float64 | Float32,
+    y: Float64 | Float32,
+    depth: Float64 | Float32,
+    colours: Float32,
+    min_area: float = MIN_AREA,
+    framed: bool = True,
 ) -> Iterator[tuple[Bool, tuple[float, float], tuple[float, float]]]:
     """Of points at (x, y) (N,) metres in a plane, ``depth`` (N,) before it: of each thing the points, the lowest corner
-    and the sides."""
+    and the sides. ``framed``: rims may have gaps and still surround a thing."""
     origin = np.array([x.min(), y.min()])
     column, row = ((x - origin[0]) / CELL).astype(int), ((y - origin[1]) / CELL).astype(int)
     relief = np.float32(MAX_PAINT_STEP / MAX_RELIEF) * depth[:, None].astype(np.float32)
     looks = np.concatenate([colours, relief], axis=1)  # (N, 4), in colour steps
     seen, image = _raster(row, column, looks, (int(row.max()) + 1, int(column.max()) + 1))
-    regions = _things(seen, image)
+    regions = _things(seen, image, framed)
     for k in range(1, regions.max() + 1):
-        rows, columns = np.nonzero(regions == k)
-        corner = float(origin[0] + columns.min() * CELL), float(origin[1] + rows.min() * CELL)
-        sides = float((np.ptp(columns) + 1) * CELL), float((np.ptp(rows) + 1) * CELL)
-        if len(rows) * CELL**2 >= max(MIN_AREA, MIN_FILL * sides[0] * sides[1]) and min(sides) >= MIN_SIDE:
+        rows, columns = (_full(a) for a in np.nonzero(regions == k))
+        corner = float(origin[0] + columns[0] * CELL), float(origin[1] + rows[0] * CELL)
+        sides = float(len(columns) * CELL), float(len(rows) * CELL)
+        area = np.count_nonzero(regions[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] == k) * CELL**2
+        if area >= max(min_area, MIN_FILL * sides[0] * sides[1]):
             yield regions[row, column] == k, corner, sides
+
+
+def _full(lines: NDArray[np.intp]) -> NDArray[np.intp]:
+    """All numbers from the first to the last line that is nearly as full as most; ``lines``: (M,) those of cells."""
+    counts = np.bincount(lines)
+    full = np.flatnonzero(counts >= MIN_LINE * np.median(counts[counts > 0]))
+    return np.arange(full[0], full[-1] + 1)
 
 
 def _raster(
@@ -141,7 +163,7 @@ def _step(a: Float32, b: Float32) -> Float32:
     return np.asarray(np.maximum(colour_step(a[..., :3], b[..., :3]), np.abs(a[..., 3] - b[..., 3])), np.float32)
 
 
-def _things(seen: Bool, image: Float32) -> NDArray[np.intp]:
+def _things(seen: Bool, image: Float32, framed: bool) -> NDArray[np.intp]:
     """(H, W) number of the thing that each cell of a wall's raster belongs to, 0 = bare wall or not seen.
 
     The bare wall is the largest region whose neighbouring cells differ little: light may fade across it as it likes. A
@@ -161,7 +183,7 @@ def _things(seen: Bool, image: Float32) -> NDArray[np.intp]:
     bare = _bare(seen, labels, image)
     kernel = np.ones((3, 3), bool)
     other = seen & ~bare
-    rims = ndimage.label(other, kernel)[0]
+    rims = ndimage.label(other | (ndimage.binary_closing(other, kernel) & seen) if framed else other, kernel)[0]
     for k, place in enumerate(ndimage.find_objects(rims), 1):
         if min(rims[place].shape) * CELL <= MAX_SHORT_SIDE:  # larger ones are corners of the room
             other[place] |= ndimage.binary_fill_holes(rims[place] == k)
