@@ -10,11 +10,12 @@ COLUMNS = ("R25_1", "P25_1", "R50_1", "R25_2", "P25_2", "R50_2", "P50_2")
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:
-    """Markdown: a line a world, then means, medians and pooled figures (every object of all worlds counts the same)."""
+    """Markdown: a line a world, then means, medians and pooled figures (every object, every box counts the same)."""
     head = ["world", "true", "boxes", *COLUMNS, "cm", "noun", "wrong", "colour/paint", "s", "MB", "prototype s", "R/P"]
     lines = [head, ["---"] * len(head), *(_line(r["category"].split(" / ")[-1], [r], np.mean) for r in rows)]
     lines += [_line("**mean**", rows, np.mean), _line("**median**", rows, np.median)]
-    pooled = [{**r, **{c: _pooled(rows, c) for c in COLUMNS}} for r in rows]
+    centres = float(np.average([r["cm_2"] for r in rows], weights=[r["matched"] for r in rows]))
+    pooled = [{**r, **{c: _pooled(rows, c) for c in COLUMNS}, "cm_2": centres} for r in rows]
     lines.append(_line("**pooled**", pooled, np.mean))
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
@@ -31,7 +32,7 @@ def _line(name: str, rows: Sequence[dict[str, Any]], middle: Callable[[Any], Any
 
     matched = max(sum(r["matched"] for r in rows), 1)
     named = sum(r["noun"] + r["family"] for r in rows) / matched
-    wrong = 1 - named - sum(r["generic"] for r in rows) / matched
+    wrong = max(0.0, 1 - named - sum(r["generic"] for r in rows) / matched)
     colours = "/".join(f"{sum(r[key] for r in rows) / matched:.2f}" for key in ("colour", "paint"))
     return [
         name,
