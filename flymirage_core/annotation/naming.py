@@ -51,8 +51,10 @@ BARE_FRONT: Final = (0.05, 0.35)
 """Metres of relief up to which only a face flush with its wall was seen of a thing above the floor, and the left-over
 probability from which that is a panel of the wall, a headboard behind pillows, if nobody has a name for it."""
 TELEVISION: Final = "television"
-BUILDING: Final = frozenset({"window"})
+BUILDING: Final = frozenset({"door", "window"})
 """What has a name, but is no thing."""
+LIKELY: Final = 0.5
+"""Score of a name below which a box counts as nameless when it is judged whether it is a part of the building."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
     if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
-    if name.noun != UNKNOWN:
+    if not _is_unsure(name):
         return True
     panel = box.on_wall and longest > PANEL
     if panel or (_is_pillar(box) and name.left_over >= LIKE_A_PILLAR):
@@ -97,7 +99,12 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
 def is_bare_front(thing: Observation, name: Name) -> bool:
     """Whether nothing but a flat piece of a wall, or of what covers it, was seen."""
     built = thing.support is not Support.FLOOR and not thing.box.on_wall
-    return name.noun == UNKNOWN and built and thing.relief < BARE_FRONT[0] and name.left_over >= BARE_FRONT[1]
+    return _is_unsure(name) and built and thing.relief < BARE_FRONT[0] and name.left_over >= BARE_FRONT[1]
+
+
+def _is_unsure(name: Name) -> bool:
+    """Whether nobody has a name for it that is likelier than not."""
+    return name.noun == UNKNOWN or name.score < LIKELY
 
 
 def _is_pillar(box: FittedBox) -> bool:

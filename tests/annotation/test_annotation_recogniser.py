@@ -241,6 +241,7 @@ def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
 def test_nameless_pillars_are_dropped_and_named_tall_things_stay(size):
     assert not is_believed(box(0, size), name(left_over=0.5), seen())
     assert is_believed(box(0, size), name("wardrobe", left_over=0.5), seen())
+    assert not is_believed(box(0, size), replace(name("fridge", left_over=0.5), score=0.3), seen())  # a mere guess
     assert is_believed(box(0, size), name(), seen())  # surely a thing: a column that stands free
     assert is_believed(box(0, (1.0, 1.2, 2.4)), name(left_over=0.5), seen())
 
