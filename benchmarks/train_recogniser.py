@@ -358,31 +358,28 @@ def least_probability(probabilities: np.ndarray, right: np.ndarray, wanted: floa
     return float(np.clip(probabilities[order][good[-1]] if len(good) else 0.95, LEAST, 0.95))
 
 
-def card(recogniser: Recogniser, judged: Judged, thresholds: np.ndarray, examples: Examples, size: int) -> str:
-    """RECOGNISER.md."""
-    said = judged.said(thresholds)
-    objects = examples.nouns != LEFT_OVER
-    right = said == examples.nouns
-    family = ~right & (said == heads(examples.nouns))
-    generic = said == UNKNOWN
-    wrong = objects & ~right & ~family & ~generic
-    dropped = judged.left_over >= MAX_LEFT_OVER
-    guessed = objects & (judged.material_p >= thresholds[2]) & (examples.materials != "")
-    confused = Counter(zip(examples.nouns[wrong].tolist(), said[wrong].tolist(), strict=True)).most_common(12)
-    unknown = objects & ~np.isin(examples.nouns, recogniser.nouns)
-    share = lambda mask: f"{mask[objects].mean():.1%}"  # noqa: E731
+def card(
+    recogniser: Recogniser, judged: Judged, thresholds: np.ndarray, examples: Examples, size: int, kept: int
+) -> str:
+    """RECOGNISER.md; ``kept`` of the networks are those of a former recogniser."""
+    networks = len(recogniser.noun_head[0])
+    known_before = (
+        f"\n{kept} of the networks are those of the former recogniser, whose worlds are not counted here (its card is in\n"
+        "this file's history); the others began where it stood and learned on."
+    )
     return f"""# Model card: the recogniser of the embedded annotator
 
-`recogniser.npz` ({size / 1e6:.2f} MB): {NETWORKS} networks, {FEATURES} -> {HIDDEN[0]} -> {HIDDEN[1]} ->
+`recogniser.npz` ({size / 1e6:.2f} MB): {networks} networks, {FEATURES} -> {HIDDEN[0]} -> {HIDDEN[1]} ->
 {len(recogniser.nouns)} nouns and "no object of its own", {len(recogniser.materials)} kinds of material; probabilities
 averaged. Made by `benchmarks/train_recogniser.py` (`collect`, then `train`); seed {SEED}; Apache-2.0 like the rest.
 
-**Input**: {FEATURES} numbers of a box (`appearance.py`): size, place, shape grid, colours by height, crops of the three
-views that show most of it. **Output**: a noun, else the family of nouns, else "object"; a material or none.
+**Input**: {FEATURES} numbers of a box (`surroundings.py`, `appearance.py`): what goes on beyond its faces and how it
+was seen, size, place, shape grid, colours by height, crops of the three views that show most of it. **Output**: a noun,
+else the family of nouns, else "object"; a material or none.
 
 **Data**: {len(set(examples.worlds.tolist()))} generated worlds, {len(examples.nouns)} boxes that the annotator
-itself made of their renders ({(~objects).sum()} of them no object of their own);
-labels from the generator. No photograph, no captured room, nobody's data but our own.
+itself made of their renders in both passes ({(~objects).sum()} of them no object of their own);
+labels from the generator. No photograph, no captured room, nobody's data but our own.{known_before if kept else ""}
 
 **Figures** by cross-validation: each world is judged by a network that was trained on others ({objects.sum()} matched
 boxes; {unknown.sum()} are of nouns too rare to be learned). The thresholds were set on these, so
@@ -430,7 +427,7 @@ def main() -> None:
     arrays["thresholds"] = calibrated(judged, examples)
     np.savez_compressed(HOME / "recogniser.npz", **arrays)
     size = (HOME / "recogniser.npz").stat().st_size
-    text = card(recogniser_of(arrays), judged, arrays["thresholds"], examples, size)
+    text = card(recogniser_of(arrays), judged, arrays["thresholds"], examples, size, NETWORKS if former else 0)
     (HOME / "RECOGNISER.md").write_text(text)
     print(text)
 
