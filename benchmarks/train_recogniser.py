@@ -364,9 +364,20 @@ def card(
     """RECOGNISER.md; ``kept`` of the networks are those of a former recogniser."""
     networks = len(recogniser.noun_head[0])
     known_before = (
-        f"\n{kept} of the networks are those of the former recogniser, whose worlds are not counted here (its card is in\n"
-        "this file's history); the others began where it stood and learned on."
+        f"\n{kept} of the networks are those of the former recogniser, whose worlds are not counted here (its card is "
+        "in\nthis file's history); the others began where it stood and learned on."
     )
+    said = judged.said(thresholds)
+    objects = examples.nouns != LEFT_OVER
+    right = said == examples.nouns
+    family = ~right & (said == heads(examples.nouns))
+    generic = said == UNKNOWN
+    wrong = objects & ~right & ~family & ~generic
+    dropped = judged.left_over >= MAX_LEFT_OVER
+    guessed = objects & (judged.material_p >= thresholds[2]) & (examples.materials != "")
+    confused = Counter(zip(examples.nouns[wrong].tolist(), said[wrong].tolist(), strict=True)).most_common(12)
+    unknown = objects & ~np.isin(examples.nouns, recogniser.nouns)
+    share = lambda mask: f"{mask[objects].mean():.1%}"  # noqa: E731
     return f"""# Model card: the recogniser of the embedded annotator
 
 `recogniser.npz` ({size / 1e6:.2f} MB): {networks} networks, {FEATURES} -> {HIDDEN[0]} -> {HIDDEN[1]} ->
