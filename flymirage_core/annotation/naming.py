@@ -45,7 +45,7 @@ PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 PILLAR: Final = (2.2, 0.8)
 """Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post ..."""
-LIKE_A_PILLAR: Final = 0.4
+LIKE_A_PILLAR: Final = 0.25
 """... from this left-over probability on."""
 BARE_FRONT: Final = (0.05, 0.35)
 """Metres of relief up to which only a face flush with its wall was seen of a thing above the floor, and the left-over
@@ -87,10 +87,11 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
     limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
     if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
+    if name.noun == UNKNOWN and _is_pillar(box) and name.left_over >= LIKE_A_PILLAR:
+        return False
     if not _is_unsure(name):
         return True
-    panel = box.on_wall and longest > PANEL
-    if panel or (_is_pillar(box) and name.left_over >= LIKE_A_PILLAR):
+    if box.on_wall and longest > PANEL:
         return False
     slat = second < LEAST_UNNAMED[1] or (thin < LEAST_UNNAMED[0] and not box.on_wall)
     return name.left_over < SURELY_A_THING or not (slat or seen.views < MIN_VIEWS)
