@@ -157,8 +157,9 @@ class EmbeddedAnnotator:
 
 def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) -> list[FittedBox]:
     """Boxes of the objects in a cloud of solid points, floor to ceiling and then by place."""
-    flat = structure.contains(cloud.points)
-    objects = np.flatnonzero(~flat)
+    building = structure.contains(cloud.points)
+    flat = building.copy()  # and what lies close before a wall and faces as it does
+    objects = np.flatnonzero(~building)
     normals = surface_normals(cloud.points[objects], cloud.to_camera[objects], NORMAL_RADIUS * voxel, NORMAL_NEIGHBOURS)
     bulk = ~structure.is_wall_skin(cloud.points[objects], normals)
     flat[objects[~bulk]] = True
@@ -173,7 +174,6 @@ def propose_boxes(cloud: FusedPoints, structure: RoomStructure, voxel: float) ->
     boxes = [box for box in boxes if is_thing(box, structure)]
     colours = shading_free(to_lab(cloud.colours))
     regions = floor_regions(cloud.points, colours, structure)
-    building = structure.contains(cloud.points)
     boxes = on_plates(boxes, cloud.points, colours, building, structure)
     boxes += wall_objects(cloud.points, colours, flat, structure) + ceiling_objects(cloud.points, colours, structure)
     boxes = without_contents(_without_duplicates(boxes), cloud.points)
