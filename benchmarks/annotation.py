@@ -14,7 +14,6 @@ import importlib.util
 import json
 import math
 import multiprocessing
-import resource
 import sys
 import tempfile
 import time
@@ -321,7 +320,10 @@ def annotated_apart(views: Sequence[View], annotator: Annotator, settings: Setti
 def _annotate_folder(folder: Path, annotator: Annotator, settings: Settings) -> tuple[BoxMap, float, float]:
     started = time.process_time()
     boxes = annotator.annotate(PosedViews.load(folder), settings.targets.near_distance)
-    return boxes, time.process_time() - started, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1000
+    status = (
+        Path("/proc/self/status").read_text().split()
+    )  # rusage would count what the parent held when it spawned this
+    return boxes, time.process_time() - started, int(status[status.index("VmHWM:") + 1]) / 1000
 
 
 def write_pictures(folder: Path, scene: Scene, seen: Seen, boxes: BoxMap, settings: Settings) -> None:

@@ -128,7 +128,7 @@ class FittedBox:
 
     @property
     def volume(self) -> float:
-        return float(np.prod(self.size))
+        return self.size[0] * self.size[1] * self.size[2]
 
 
 def fit_footprint(points: Float32, room_yaw: float, trim: float = TRIM) -> Footprint:

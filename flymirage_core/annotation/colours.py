@@ -1,5 +1,7 @@
 """Colours as people name them, and colours as segmentation compares them. CIELAB, D65."""
 
+import math
+from collections.abc import Iterable
 from typing import Final
 
 import cv2
@@ -71,15 +73,15 @@ def colour_step(a: Float32, b: Float32) -> Float32:
     return np.asarray(np.sqrt((difference**2).sum(axis=-1)), np.float32)
 
 
-def colour_name(lab: ArrayLike) -> str:
+def colour_name(lab: Iterable[float]) -> str:
     """A basic colour name with "dark" or "light" where that helps.
 
     >>> [colour_name(lab) for lab in to_lab([[200, 30, 30], [20, 60, 20], [250, 250, 250]])]
     ['red', 'dark green', 'white']
     """
-    lightness, a, b = (float(x) for x in np.asarray(lab, float))
-    chroma = float(np.hypot(a, b))
-    hue = float(np.degrees(np.arctan2(b, a)) % 360)
+    lightness, a, b = (float(x) for x in lab)
+    chroma = math.hypot(a, b)
+    hue = math.degrees(math.atan2(b, a)) % 360
     if chroma < _least_chroma(lightness, hue):
         return next(name for limit, name in GREYS if lightness < limit or limit > 100)
     name = min(HUES, key=lambda entry: abs((hue - entry[1] + 180) % 360 - 180))[0]

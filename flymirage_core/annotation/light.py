@@ -87,7 +87,7 @@ def seen_colour(rgb: ArrayLike, light: Light) -> str:
     plain = _linear(colours) @ LUMINANCE < GLARE
     lab = in_white_light(colours[plain] if plain.mean() > MIN_PLAIN else colours, light)
     lab = lab[:: max(1, len(lab) // SAMPLES)]
-    basic = [colour_name(each).split()[-1] for each in lab]
+    basic = [colour_name(each).split()[-1] for each in lab.tolist()]
     commonest, _ = Counter(basic).most_common(1)[0]
     return colour_name(np.median(lab[np.array(basic) == commonest], axis=0))
 
