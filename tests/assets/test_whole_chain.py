@@ -91,6 +91,7 @@ def test_a_planner_change_rebuilds_trajectories_and_what_follows_and_nothing_els
     assert rebuilt == {"trajectories", "frames", "quality_verdict", "prompts"}
 
 
+@pytest.mark.timeout(600)  # two whole scenes, on two cores that another worker uses too
 @pytest.mark.parametrize("instant", ["files committed:4", "staged:10"])
 def test_a_killed_run_resumes_and_ends_with_the_same_bytes(grown: Project, project: Project, instant: str) -> None:
     killed = project.flymirage("grow", FLYMIRAGE_FAULT=instant)
