@@ -15,8 +15,6 @@ from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.colours import to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
 from flymirage_core.annotation.labels import Support, green
-from flymirage_core.annotation.light import Light, seen_colour
-from flymirage_core.annotation.normals import surface_shape
 from flymirage_core.annotation.room_structure import RoomStructure
 from flymirage_core.annotation.surroundings import FEATURES as SURROUNDINGS
 
@@ -29,13 +27,8 @@ CROP: Final = 24
 CROP_CELLS: Final = 6
 EDGE_CELLS: Final = 4
 EDGE_ANGLES: Final = 6
-CROPS: Final = 3
-"""Views whose crops are averaged: those that show most of the box."""
 CROP_MARGIN: Final = 0.06
 """Metres round the box within which a pixel's point belongs to it."""
-NEIGHBOURHOOD: Final = 0.09
-"""Metres within which a surface's direction and roughness are judged."""
-NEIGHBOURS: Final = 16
 AT_WALL: Final = 0.3
 """Metres to a wall's plane within which a surface is at the wall."""
 FAR: Final = 3.0
@@ -56,30 +49,26 @@ class Observation:
 
     box: FittedBox
     support: Support
-    views: tuple[int, ...]  # indices of the frames that show most of it, best first
     points: Float32  # (M, 3) seen of it
     relief: float  # metres that they spread across the wall which they are at; inf away from walls
-    colour: str  # by name, in white light
-    lab: Float32  # (M, 3) plain CIELAB of its points
-    variation: Float32  # (M,) `surface_variation` of its points
     features: Float32  # (FEATURES,)
 
 
 def observe(
     box: FittedBox,
     support: Support,
-    cloud: FusedPoints,
+    seen: FusedPoints,
+    normals: Float32,
+    variation: Float32,
     structure: RoomStructure,
-    light: Light,
     frames: Sequence[Frame],
-    views: Sequence[int],
     around: Float32,
 ) -> Observation:
-    """Measure a box: ``light`` is the place's, ``views`` are the frames that show most of it, best first, and
-    ``around`` is its row of `surroundings`."""
-    points = cloud.points[box.members]
-    lab = to_lab(cloud.colours[box.members])  # (M, 3)
-    normals, variation = surface_shape(points, cloud.to_camera[box.members], NEIGHBOURHOOD, NEIGHBOURS)
+    """Measure a box. ``seen``: its M points, with ``normals`` (M, 3) and `surface_variation` (M,).
+
+    ``frames``: those that show most of it. ``around``: its `surroundings`.
+    """
+    points, lab = seen.points, to_lab(seen.colours)  # (M, 3)
     local, half = _in_box(box, points)
     features = np.concatenate(
         [
@@ -88,13 +77,10 @@ def observe(
             _slabs(local, lab, normals, variation).ravel(),
             _geometry(box, support, structure, len(points)),
             _colours(lab, variation),
-            _crops(box, [frames[i] for i in views[:CROPS]]),
+            _crops(box, frames),
         ]
     ).astype(np.float32)
-    colour = seen_colour(cloud.colours[box.members], light)
-    return Observation(
-        box, support, tuple(views), points, _relief(box, points, structure), colour, lab, variation, features
-    )
+    return Observation(box, support, points, _relief(box, points, structure), features)
 
 
 def mirrored(features: Float32) -> Float32:

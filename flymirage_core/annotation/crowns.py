@@ -55,8 +55,11 @@ def _is_cut(box: FittedBox, structure: RoomStructure) -> bool:
 
 def _inside(box: FittedBox, points: Float32) -> NDArray[np.bool_]:
     c, s = np.cos(box.yaw), np.sin(box.yaw)
-    local = (points - np.array(box.centre)) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    return np.asarray((np.abs(local) < np.array(box.size) / 2 + MARGIN).all(axis=1))
+    radius = np.hypot(*box.size[:2]) / 2 + 2 * MARGIN  # in plan
+    inside = (np.abs(points[:, :2] - np.array(box.centre[:2])) < radius).all(axis=1)
+    local = (points[inside] - np.array(box.centre)) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    inside[inside] = (np.abs(local) < np.array(box.size) / 2 + MARGIN).all(axis=1)
+    return np.asarray(inside)
 
 
 def _with_crown(box: FittedBox, points: Float32, structure: RoomStructure) -> FittedBox:

@@ -11,24 +11,22 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from flymirage_core.annotation.appearance import Observation, observe, window_of
+from flymirage_core.annotation.appearance import Observation
 from flymirage_core.annotation.backs import with_backs
 from flymirage_core.annotation.box_fitting import (
     MAX_CARRIED_GAP,
     MAX_WALL_GAP,
     FittedBox,
     fit_box,
-    on_floor,
     settle,
 )
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
-from flymirage_core.annotation.carving import Detections, detections, solid
+from flymirage_core.annotation.carving import Detections, solid
 from flymirage_core.annotation.colours import colour_step, shading_free, to_lab
 from flymirage_core.annotation.crowns import with_crowns
+from flymirage_core.annotation.evidence import Evidence
 from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of, fuse_points, square_only
 from flymirage_core.annotation.fusion import yaw_iou
-from flymirage_core.annotation.labels import Support
-from flymirage_core.annotation.light import light_of
 from flymirage_core.annotation.lying import floor_regions, lying_on, on_plates, rugs
 from flymirage_core.annotation.merging import merge_parts
 from flymirage_core.annotation.naming import Name, is_bare_front, is_believed, named
@@ -38,6 +36,7 @@ from flymirage_core.annotation.parts import PartSet, Surface
 from flymirage_core.annotation.picture_joins import join_pieces
 from flymirage_core.annotation.picture_votes import Vote, look_at, visible_windows, votes
 from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
+from flymirage_core.annotation.regrouping import Judge, believed, regrouped
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.rows import in_row
 from flymirage_core.annotation.segmentation import (
@@ -46,7 +45,6 @@ from flymirage_core.annotation.segmentation import (
     smoothed_colours,
 )
 from flymirage_core.annotation.supports import Face, level_faces, standing_things
-from flymirage_core.annotation.surroundings import surroundings
 from flymirage_core.annotation.tops import take_off_tops
 from flymirage_core.annotation.wall_objects import ceiling_objects, wall_objects
 from flymirage_core.annotation.yolox import PictureDetection, YoloxDetector
@@ -67,13 +65,7 @@ NORMAL_NEIGHBOURS: Final = 16
 STRUCTURE_NEIGHBOURS: Final = 12
 HALF_AN_OBJECT: Final = 0.5
 """Metres that an object may reach beyond its centre: so much farther than the limit its own pixels may lie."""
-RESTING: Final = 0.1
-"""Metres between a thing and what carries it."""
-AT_WALL: Final = 0.15
 DUPLICATE_IOU: Final = 0.5
-VIEWS_TRIED: Final = 16
-"""Frames with the most points of a box, among which the best views are sought."""
-VIEWS_KEPT: Final = 6
 FULL_EVIDENCE: Final = 12
 """Supporting views from which more add nothing to the score."""
 
@@ -100,7 +92,8 @@ class EmbeddedAnnotator:
         """
         frames = frames_of(views)
         pictures = look_at(frames, self.detector) if self.detector is not None else []
-        found = self.observations(frames, max_distance, pictures)
+        evidence = self.evidence(frames, max_distance)
+        found = self.observations(evidence, pictures)
         things = [thing for thing, _ in found]
         said: list[Vote | None] = [None] * len(things)
         if pictures:
@@ -113,35 +106,29 @@ class EmbeddedAnnotator:
             if is_believed(t.box, n, s) and not is_bare_front(t, n)
         ]
         annotator = f"{self.name} {self.version}"
-        return BoxMap(tuple(_object_box(k, t, n, s, annotator) for k, (t, s, n) in enumerate(kept)))
+        return BoxMap(tuple(_object_box(k, evidence, *thing, annotator) for k, thing in enumerate(kept)))
+
+    def evidence(self, frames: Sequence[Frame], max_distance: float) -> Evidence:
+        """What the frames show of a place up to ``max_distance`` metres; see `annotate`."""
+        structure, coarse = self.structure(frames)
+        cloud = fuse_points(frames, self.settings.voxel, min(max_distance, FARTHEST) + HALF_AN_OBJECT)
+        cloud = _solid_cloud(cloud, structure, frames)
+        proposals = propose_boxes(cloud, structure, self.settings.voxel)
+        return Evidence(cloud, coarse, structure, frames, max_distance, proposals)
 
     def observations(
-        self, frames: Sequence[Frame], max_distance: float, pictures: Sequence[Sequence[PictureDetection]] = ()
+        self, evidence: Evidence, pictures: Sequence[Sequence[PictureDetection]] = (), judge: Judge = believed
     ) -> list[tuple[Observation, Detections]]:
         """The boxes of the objects, with what names are judged by and how each was seen; see `annotate`.
 
-        ``pictures``: what a 2D detector found in each frame, if there is one.
+        ``pictures``: what a 2D detector found in each frame, if there is one. ``judge``: see `regrouped`.
         """
-        structure, place = self.structure(frames)
-        cloud = fuse_points(frames, self.settings.voxel, min(max_distance, FARTHEST) + HALF_AN_OBJECT)
-        cloud = _solid_cloud(cloud, structure, frames)
-        boxes = with_backs(propose_boxes(cloud, structure, self.settings.voxel), structure, frames)
-        boxes = with_crowns(boxes, place, structure)
+        structure, frames = evidence.structure, evidence.frames
+        boxes = regrouped(evidence, judge)
+        boxes = with_crowns(with_backs(boxes, structure, frames), evidence.coarse, structure)
         if pictures:
-            boxes = join_pieces(boxes, cloud, structure, frames, pictures)
-        support = detections(cloud.points, boxes, frames, max_distance)
-        seen = [(box, found) for box, found in zip(boxes, support, strict=True) if found.views]
-        rivals = [box for box, _ in seen]
-        light = light_of(cloud.colours)
-        plain = shading_free(to_lab(cloud.colours))
-        building = structure.contains(cloud.points)
-        around = surroundings(rivals, [found for _, found in seen], cloud.points, plain, building)
-        observed = []
-        for (box, found), row in zip(seen, around, strict=True):
-            views = best_views(box, found.hits, frames)
-            thing = observe(box, support_of(box, rivals, structure), cloud, structure, light, frames, views, row)
-            observed.append((thing, found))
-        return observed
+            boxes = join_pieces(boxes, evidence.cloud, structure, frames, pictures)
+        return [seen for seen in evidence.observed(boxes, [boxes] * len(boxes)) if seen is not None]
 
     def structure(self, frames: Sequence[Frame]) -> tuple[RoomStructure, Float32]:
         """The building, and the coarse cloud (N, 3) of views spread over the sequence that it was found in."""
@@ -237,18 +224,9 @@ def _without_duplicates(boxes: Sequence[FittedBox]) -> list[FittedBox]:
     return kept
 
 
-def best_views(box: FittedBox, hits: NDArray[np.int64], frames: Sequence[Frame]) -> list[int]:
-    """Indices of the frames that show most of the box: many of its points (``hits`` (F,)) and large, best first."""
-    candidates = [int(i) for i in np.argsort(-hits, kind="stable")[:VIEWS_TRIED] if hits[i]]
-
-    def shown(i: int) -> float:
-        window = window_of(box, frames[i])
-        return 0.0 if window is None else float(hits[i] * np.sqrt((window[2] - window[0]) * (window[3] - window[1])))
-
-    return sorted(candidates, key=shown, reverse=True)[:VIEWS_KEPT]
-
-
-def _object_box(number: int, thing: Observation, name: Name, found: Detections, annotator: str) -> ObjectBox:
+def _object_box(
+    number: int, evidence: Evidence, thing: Observation, found: Detections, name: Name, annotator: str
+) -> ObjectBox:
     box = thing.box
     return ObjectBox(
         object_id=number,
@@ -258,32 +236,10 @@ def _object_box(number: int, thing: Observation, name: Name, found: Detections, 
         yaw=box.yaw,
         score=float((name.score + min(1.0, found.views / FULL_EVIDENCE)) / 2),
         label_source=name.source,
-        colour=thing.colour,
+        colour=evidence.colour_of(box),
         material=name.material,
         supporting_frames=found.views,
         nearest_camera_distance=found.nearest,
         annotator=annotator,
         label_score=name.score,
-    )
-
-
-def support_of(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructure) -> Support:
-    """What a box rests on, judged from its place."""
-    if box.on_wall:
-        return Support.WALL
-    if box.hanging:
-        return Support.CEILING
-    if on_floor(box, structure):
-        return Support.FLOOR
-    carried = any(other is not box and abs(other.top - box.bottom) < RESTING and _over(box, other) for other in boxes)
-    near_wall = any(
-        abs(float(np.dot(w.normal, box.centre[:2])) - w.offset) - max(box.size[:2]) / 2 < AT_WALL
-        for w in structure.walls_at(box.centre)
-    )
-    return Support.WALL if near_wall and not carried else Support.SURFACE
-
-
-def _over(box: FittedBox, other: FittedBox) -> bool:
-    return bool(
-        np.hypot(box.centre[0] - other.centre[0], box.centre[1] - other.centre[1]) < max(other.size[:2]) / 2 + RESTING
     )

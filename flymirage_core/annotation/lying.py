@@ -26,6 +26,10 @@ MAX_LYING: Final = 0.045
 FLOOR_DEPTH: Final = 0.2
 """Metres below the upper limit of a floor within which its points are."""
 RUG_THICKNESS: Final = 0.015
+MIN_STEP: Final = 0.025
+"""Metres above what is beside it from which a rug is a mat that is as thick as that."""
+RIM: Final = (0.08, 0.3)
+"""Metres beyond a flat region between which that is."""
 MIN_RUG: Final = 0.4
 MAX_RUG: Final = 2.6
 """Metres of a rug's shorter side, at least and at most."""
@@ -42,10 +46,12 @@ COVERED: Final = 0.5
 MAX_BASE: Final = 1.1
 """Metres of a plate that something stands on."""
 MAX_BASE_GROWTH: Final = 3.5
-"""Area in plan of a thing with its plate over that without."""
+"""Area in plan of a thing with its plate over that without, ..."""
+THIN: Final = 0.1
+"""... to whose sides so many metres are added: signs are nearly nothing in plan."""
 BASE_RIM: Final = 0.3
 """Metres beyond a thing's sides: a plate reaches half as far, and farther out is the ground, ..."""
-MIN_CONTRAST: Final = 16.0
+MIN_CONTRAST: Final = 10.0
 """... from whose colour the thing's must differ by so much; ..."""
 SAME: Final = 0.25
 """... the plate's differs by this share of it at most. Shadows are in between."""
@@ -60,7 +66,8 @@ class Region:
 
     plan: Footprint
     members: NDArray[np.intp]
-    height: float  # world z of its points
+    height: float  # world z of its points, ...
+    around: float  # ... and of what is beside it
 
 
 def floor_regions(points: Float32, colours: Float32, structure: RoomStructure) -> list[Region]:
@@ -101,7 +108,7 @@ def _on_plate(box: FittedBox, floor: NDArray[np.intp], points: Float32, colours:
     if len(foot) < MIN_FOOT_POINTS:
         return box
     grown = fit_footprint(points[np.concatenate([lower, foot])], box.yaw)
-    if grown.area < plan.area or grown.area > MAX_BASE_GROWTH * plan.area:
+    if grown.area < plan.area or grown.area > MAX_BASE_GROWTH * float(np.prod(plan.size + THIN)):
         return box
     x, y = (float(c) for c in grown.centre)
     size = (float(grown.size[0]), float(grown.size[1]), box.size[2])
@@ -116,7 +123,9 @@ def rugs(regions: Sequence[Region], boxes: Sequence[FittedBox], structure: RoomS
             continue
         if any(on_floor(box, structure) and _covers(box, region) for box in boxes):
             continue
-        found.append(_flat_box(region, region.height - SEEN_TOO_HIGH, RUG_THICKNESS))
+        top = region.height - SEEN_TOO_HIGH
+        bottom = region.around - SEEN_TOO_HIGH if region.height - region.around > MIN_STEP else top
+        found.append(_flat_box(region, bottom, max(RUG_THICKNESS, top - bottom)))
     return found
 
 
@@ -154,7 +163,10 @@ def _regions(
     for mine, (x, y), (w, h) in flat_things(along, across, height[members], colours[members], MIN_AREA, framed=False):
         plan = Footprint(np.array([x + w / 2, y + h / 2]) @ axes, np.array([w, h]), float(yaw % (np.pi / 2)))
         chosen = members[mine]
-        yield Region(plan, chosen, float(np.median(points[chosen, 2])))
+        away = (np.abs(plan.local(points[members])) - plan.size / 2).max(axis=1)  # metres beyond its sides
+        beside = members[(away > RIM[0]) & (away < RIM[1])]
+        height_of = [float(np.median(points[m, 2])) if len(m) else np.inf for m in (chosen, beside)]
+        yield Region(plan, chosen, *height_of)
 
 
 def _covers(box: FittedBox, region: Region) -> bool:

@@ -38,6 +38,8 @@ PANEL_HEIGHT: Final = 1.9
 PANEL_DEPTH: Final = 0.2
 PANEL_GAP: Final = 0.3
 """Metres to the wall that a panel runs along."""
+PIPE: Final = 0.4
+"""Metres; what is no wider is a pipe, where it runs up a house front."""
 FRAME_SIDE: Final = 0.16
 """Metres; what is as high as a panel and thinner than this both ways is a door frame or the edge of a pillar."""
 SKIN_HEIGHT: Final = 0.05
@@ -106,7 +108,10 @@ def _is_panel(box: FittedBox, structure: RoomStructure) -> bool:
     short, long = sorted(box.size[:2])
     if box.size[2] < PANEL_HEIGHT:
         return False
-    return long < FRAME_SIDE or (short < PANEL_DEPTH and structure.wall_gap(box.centre, short) < PANEL_GAP)
+    at_wall = short < PANEL_DEPTH and structure.wall_gap(box.centre, short) < PANEL_GAP
+    if structure.ceiling is None:
+        return at_wall and long > PIPE
+    return at_wall or long < FRAME_SIDE
 
 
 def _is_sliver(box: FittedBox, clearance: float) -> bool:

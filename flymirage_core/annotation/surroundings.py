@@ -7,6 +7,7 @@ a thing of its own mostly ends. The recogniser judges by these numbers, beside l
 from collections.abc import Sequence
 from typing import Final
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,11 +18,14 @@ from flymirage_core.annotation.fusion import footprint_overlap
 
 Float32 = NDArray[np.float32]
 Bool = NDArray[np.bool_]
+Index = NDArray[np.intp]
 
 REACH: Final = 0.12
 """Metres beyond a face within which its surroundings lie, ..."""
 SLACK: Final = 0.02
 """... and within which a point still belongs to the face itself."""
+INSIDE: Final = 6
+ELSEWHERE: Final = 7
 POINT_AREA: Final = 0.03**2
 """Square metres that a fused point stands for."""
 STEP_SCALE: Final = 10.0
@@ -33,76 +37,91 @@ FEATURES: Final = 6 * 3 + 1 + 3 + 3
 
 
 def surroundings(
-    boxes: Sequence[FittedBox], seen: Sequence[Detections], points: Float32, colours: Float32, building: Bool
+    box: FittedBox,
+    seen: Detections,
+    rivals: Sequence[FittedBox],
+    near: Index,
+    points: Float32,
+    colours: Float32,
+    building: Bool,
 ) -> Float32:
-    """(B, FEATURES): what goes on beyond each box, what shares its room, and how it was seen.
+    """(FEATURES,): what goes on beyond a box, what shares its room, and how it was seen.
 
     Beyond the top, the bottom, the ends and the broad sides (the fuller one of two first): surface of things and of the
     building for a square metre of the face, and its step in colour. Then surface inside that is not the box's own; the
-    room it shares with other boxes; its views, the nearest camera, and the share of it that a view shows.
+    room it shares with its ``rivals``; its views, the nearest camera, and the share of it that a view shows.
 
-    ``points``: (N, 3) fused, that the boxes' members number. ``colours``: (N, 3) shading-free Lab. ``building``: (N,).
+    ``points``: (N, 3) fused, that the box's members number; ``near``: those that may lie within `REACH` of it.
+    ``colours``: (N, 3) shading-free Lab. ``building``: (N,).
     """
-    out = np.zeros((len(boxes), FEATURES), np.float32)
-    shared = _shared_room(boxes)
-    order = np.argsort(points[:, 0], kind="stable")
-    east = points[order, 0]
-    for k, (box, found) in enumerate(zip(boxes, seen, strict=True)):
-        radius = np.hypot(*box.size[:2]) / 2 + REACH
-        strip = order[slice(*np.searchsorted(east, (box.centre[0] - radius, box.centre[0] + radius)))]
-        out[k, :19] = _beyond(box, strip, points, colours, building)
-        out[k, 19:22] = shared[k]
-        hits = found.hits[found.hits > 0]
-        shown = float(np.median(hits)) / len(box.members) if len(hits) else 0.0
-        out[k, 22:] = np.log1p(found.views), min(found.nearest, FAR), shown
-    return out
+    hits = seen.hits[seen.hits > 0]
+    shown = float(np.median(hits)) / len(box.members) if len(hits) else 0.0
+    seen_by = np.array([np.log1p(seen.views), min(seen.nearest, FAR), shown], np.float32)
+    return np.concatenate([_beyond(box, near, points, colours, building), _shared_room(box, rivals), seen_by])
 
 
-def _beyond(box: FittedBox, strip: NDArray[np.intp], points: Float32, colours: Float32, building: Bool) -> Float32:
+def _beyond(box: FittedBox, near: Index, points: Float32, colours: Float32, building: Bool) -> Float32:
     turn = box.yaw + (np.pi / 2 if box.size[1] > box.size[0] else 0.0)
-    c, s = np.cos(turn), np.sin(turn)
     half = np.array([max(box.size[:2]), min(box.size[:2]), box.size[2]]) / 2
-    centre = np.array(box.centre)
-    radius = np.array([np.hypot(half[0], half[1]), np.hypot(half[0], half[1]), half[2]]) + REACH
-    near = strip[(np.abs(points[strip] - centre) < radius).all(axis=1)]
-    near = np.setdiff1d(near, box.members, assume_unique=True)
-    local = (points[near] - centre) @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
-    beyond = np.abs(local) - half  # (K, 3)
+    where = _sides(points, near, np.array(box.centre), turn, half)
+    foreign = np.ones(len(points), bool)
+    foreign[box.members] = False
     own = np.median(colours[box.members], axis=0)
-    areas = np.array([half[1] * half[2], half[0] * half[2], half[0] * half[1]]) * 4
+    areas = [float(4 * half.prod() / max(h, 1e-9)) for h in half]
     sides = np.zeros((3, 2, 3), np.float32)  # axis, direction: surface of things, of the building, step of colour
-    for axis in range(3):
-        within = (np.delete(beyond, axis, axis=1) < SLACK).all(axis=1)
-        within &= (beyond[:, axis] > SLACK) & (beyond[:, axis] < REACH)
-        for direction in (0, 1):
-            mine = near[within & ((local[:, axis] > 0) == (direction == 1))]
-            if not len(mine):
-                continue
-            share = len(mine) * POINT_AREA / max(areas[axis], POINT_AREA)
-            flat = float(building[mine].mean())
-            step = float(colour_step(np.median(colours[mine], axis=0), own)) / STEP_SCALE
-            sides[axis, direction] = np.log1p(share * (1 - flat)), np.log1p(share * flat), min(step, MAX_STEPS)
-        if axis < 2 and sides[axis, 0, 0] > sides[axis, 1, 0]:
+    for axis, direction in np.ndindex(3, 2):
+        mine = near[where == 2 * axis + direction]
+        mine = mine[foreign[mine]]
+        if not len(mine):
+            continue
+        share = len(mine) * POINT_AREA / max(areas[axis], POINT_AREA)
+        flat = float(building[mine].mean())
+        step = float(colour_step(np.median(colours[mine], axis=0), own)) / STEP_SCALE
+        sides[axis, direction] = np.log1p(share * (1 - flat)), np.log1p(share * flat), min(step, MAX_STEPS)
+    for axis in (0, 1):
+        if sides[axis, 0, 0] > sides[axis, 1, 0]:
             sides[axis] = sides[axis, ::-1].copy()
-    inside = int((beyond < 0).all(axis=1).sum())
+    inside = int(foreign[near[where == INSIDE]].sum())
     return np.append(sides.ravel(), np.log1p(inside / len(box.members))).astype(np.float32)
 
 
-def _shared_room(boxes: Sequence[FittedBox]) -> Float32:
-    """(B, 3) largest share of each box's room that lies in another, of another's in it, and boxes that touch it."""
-    out = np.zeros((len(boxes), 3), np.float32)
-    for i, a in enumerate(boxes):
-        for j, b in enumerate(boxes[:i]):
-            apart = np.hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1])
-            if apart > (np.hypot(*a.size[:2]) + np.hypot(*b.size[:2])) / 2:
-                continue
-            height = min(a.top, b.top) - max(a.bottom, b.bottom)
-            plan = footprint_overlap(a, b) if height > -REACH else 0.0
-            if plan <= 0:
-                continue
-            room = plan * max(height, 0.0)
-            of_a, of_b = room / max(a.volume, 1e-6), room / max(b.volume, 1e-6)
-            out[i] = max(out[i, 0], of_a), max(out[i, 1], of_b), out[i, 2] + 1
-            out[j] = max(out[j, 0], of_b), max(out[j, 1], of_a), out[j, 2] + 1
-    out[:, 2] = np.log1p(out[:, 2])
-    return out
+@numba.njit(cache=True, nogil=True)
+def _sides(
+    points: Float32, near: Index, centre: NDArray[np.float64], turn: float, half: NDArray[np.float64]
+) -> NDArray[np.int8]:
+    """(K,) beyond which face the points ``near`` lie: twice its axis, and one if ahead; or `INSIDE`, `ELSEWHERE`."""
+    c, s = np.cos(turn), np.sin(turn)
+    where = np.full(len(near), ELSEWHERE, np.int8)
+    local = np.zeros(3)
+    for k in range(len(near)):
+        x, y = points[near[k], 0] - centre[0], points[near[k], 1] - centre[1]
+        local[0], local[1], local[2] = c * x + s * y, c * y - s * x, points[near[k], 2] - centre[2]
+        face, beyond, within = 0, 0, True
+        for axis in range(3):
+            out = abs(local[axis]) - half[axis]
+            within &= out < 0
+            if out >= REACH:
+                beyond = 3
+            elif out >= SLACK:
+                beyond += 1
+                face = 2 * axis + int(local[axis] > 0)
+        if within:
+            where[k] = INSIDE
+        elif beyond == 1:
+            where[k] = face
+    return where
+
+
+def _shared_room(box: FittedBox, rivals: Sequence[FittedBox]) -> Float32:
+    """(3,) largest share of the box's room that lies in a rival, of a rival's in it, and log of those that touch it."""
+    of_own, of_rival, touching = 0.0, 0.0, 0
+    for rival in rivals:
+        height = min(box.top, rival.top) - max(box.bottom, rival.bottom)
+        plan = footprint_overlap(box, rival) if height > -REACH else 0.0
+        if plan <= 0:
+            continue
+        room = plan * max(height, 0.0)
+        of_own = max(of_own, room / max(box.volume, 1e-6))
+        of_rival = max(of_rival, room / max(rival.volume, 1e-6))
+        touching += 1
+    return np.array([of_own, of_rival, np.log1p(touching)], np.float32)

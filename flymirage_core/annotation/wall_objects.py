@@ -36,8 +36,17 @@ MAX_RELIEF: Final = 0.007
 """... if one is no more metres before the other: a white board on a white wall is not."""
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
+REFITS: Final = 4
+MOST: Final = 2.0
+"""Of the median step: what is farther from the usual looks of a stretch tells nothing of them."""
+PATTERN: Final = 3
+"""Cells over which bricks and the pattern of wallpaper are evened out."""
 MAX_PATTERN: Final = 3.0
 """Step from the usual looks of a stretch without such a region, over the median of all: bricks, wallpaper."""
+COATS: Final = 3
+"""Kinds of bare wall that one wall may show, ..."""
+MAX_AREA: Final = 4.0
+"""... each of more square metres than a thing has."""
 FRONT_PERCENTILE: Final = 60
 MIN_AREA: Final = 0.06
 """Square metres."""
@@ -193,18 +202,44 @@ def _things(seen: Bool, image: Float32, framed: bool) -> NDArray[np.intp]:
 
 
 def _bare(seen: Bool, labels: NDArray[np.int32], image: Float32) -> Bool:
-    """(H, W) cells of bare wall: the largest region of each stretch of wall that is seen in one piece.
+    """(H, W) cells of bare wall: the usual looks of each stretch of wall that is seen in one piece.
 
-    Bricks and patterned paper make no large region: there it is what resembles the stretch's usual looks.
+    What is left of a stretch and too large for a thing is wall of other looks: its lower half in another paint, say.
     """
-    stretches, count = ndimage.label(seen, np.ones((3, 3), bool))
     bare = np.zeros_like(seen)
-    for k in range(1, count + 1):
-        mine = stretches == k
-        found, counts = np.unique(labels[mine], return_counts=True)
-        if counts.max() >= MIN_BARE_SHARE * counts.sum():
-            bare |= mine & (labels == found[counts.argmax()])
-        else:
-            away = _step(image[mine], np.median(image[mine], axis=0))  # (C,)
-            bare[mine] = away < MAX_PATTERN * np.median(away)
+    for coat in range(COATS):
+        stretches = ndimage.label(seen & ~bare, np.ones((3, 3), bool))[0]
+        areas = np.bincount(stretches.ravel()) * CELL**2
+        for k in range(1, len(areas)):
+            if coat == 0 or areas[k] > MAX_AREA:
+                bare |= _usual(stretches == k, labels, image)
     return bare
+
+
+def _usual(mine: Bool, labels: NDArray[np.int32], image: Float32) -> Bool:
+    """(H, W) cells of a stretch that are its largest region, or that resemble most of it: bricks make no region."""
+    weights = ndimage.uniform_filter(mine.astype(np.float32), PATTERN)
+    sums = ndimage.uniform_filter(np.where(mine[..., None], image, 0), (PATTERN, PATTERN, 1))
+    even = sums / np.maximum(weights, 1e-6)[..., None]  # (H, W, 4), in which bricks are no more
+    away = _from_most(mine, even)
+    odd = away >= MAX_PATTERN * np.median(away[mine])
+    bare = mine & ~ndimage.binary_opening(odd, np.ones((3, 3), bool))
+    found, counts = np.unique(labels[mine], return_counts=True)
+    if counts.max() >= MIN_BARE_SHARE * counts.sum():
+        bare |= mine & (labels == found[counts.argmax()])
+    return np.asarray(bare)
+
+
+def _from_most(mine: Bool, image: Float32) -> Float32:
+    """(H, W) step of a stretch's looks from what most of it would have there: light fades, and walls are not even."""
+    row, column = (a / max(mine.shape) for a in np.nonzero(mine))
+    terms = np.stack([np.ones_like(row), row, column, row**2, row * column, column**2], axis=1)  # (C, 6)
+    looks = image[mine]
+    most = np.ones(len(looks), bool)
+    for _ in range(REFITS):
+        usual = terms @ np.linalg.lstsq(terms[most], looks[most], rcond=None)[0]  # (C, 4)
+        steps = _step(looks, usual.astype(np.float32))
+        most = steps <= MOST * np.median(steps)
+    away = np.zeros(mine.shape, np.float32)
+    away[mine] = steps
+    return away

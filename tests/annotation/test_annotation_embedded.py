@@ -1,15 +1,17 @@
 """The embedded annotator on small rooms that are ray cast exactly; truth is for scoring only."""
 
 import math
+from collections.abc import Sequence
 from functools import cache
 
 import numpy as np
 import pytest
 from analytic_room import Body, Room, Thing, block, chair, lamp, make_box, picture, sweep, table, views_of
 
+from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.boxes import BoxMap, ObjectBox
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
-from flymirage_core.annotation.fused_points import frames_of
+from flymirage_core.annotation.fused_points import Frame, frames_of
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.rendering.rasterizer import Rendering
 from flymirage_core.rendering.views import View
@@ -18,6 +20,10 @@ from flymirage_core.settings import AnnotationSettings
 ANNOTATOR = EmbeddedAnnotator(AnnotationSettings())
 BROWN, GREEN, BLUE, RED, GREY = (120, 70, 40), (40, 90, 60), (40, 70, 150), (150, 40, 40), (70, 70, 75)
 EYES = ((0.0, 0.0, 1.4), (0.9, -1.2, 1.2), (-0.9, -0.9, 1.6), (0.0, 1.0, 1.1))
+
+
+def all_boxes(frames: Sequence[Frame], max_distance: float = math.inf) -> list[FittedBox]:
+    return [thing.box for thing, _ in ANNOTATOR.observations(ANNOTATOR.evidence(frames, max_distance))]
 
 
 def turned(thing: Thing, yaw: float) -> Thing:
@@ -44,7 +50,7 @@ def best(boxes: BoxMap, truth: ObjectBox) -> tuple[float, ObjectBox]:
 def test_a_chair_at_a_table_becomes_its_own_box():
     things = table((1.0, 0.6, 0), BROWN), chair((1.0, 0.1, 0), GREEN)
     frames = frames_of(room_views(Room((5, 4.4, 2.6), things, 0.0)))
-    boxes = [thing.box for thing, _ in ANNOTATOR.observations(frames, math.inf)]  # whatever the recogniser thinks of it
+    boxes = all_boxes(frames)  # whatever the recogniser thinks of it
     found = [best(boxes, t.box) for t in things]
     assert min(iou for iou, _ in found) > 0.4
     assert found[0][1] != found[1][1]
@@ -109,7 +115,7 @@ def test_a_picture_is_found_on_its_wall_with_the_right_size():
 def test_a_board_of_the_walls_own_colour_is_found_by_its_relief():
     board = picture((0.5, 2.2, 1.5), (165, 160, 150))  # lit as boards are, it looks like the wall
     frames = frames_of(room_views(Room((5, 4.4, 2.6), (board,), 0.0)))
-    found = [thing.box for thing, _ in ANNOTATOR.observations(frames, math.inf)]
+    found = all_boxes(frames)
     assert best(found, board.box)[0] > 0.4
 
 
@@ -130,7 +136,7 @@ def test_a_bicycle_rack_is_one_thing():
     hoops = tuple(Body((0.7 * k, 0.0, 0.38), (0.06, 0.7, 0.76), GREY) for k in (-1, 0, 1))
     rack = Thing("rack", (0.6, 0.6, 0), 0.0, hoops)
     frames = frames_of(room_views(Room((5, 4.4, 2.6), (rack,), 0.0)))
-    found = [thing.box for thing, _ in ANNOTATOR.observations(frames, math.inf)]
+    found = all_boxes(frames)
     assert best(found, rack.box)[0] > 0.6
 
 
@@ -161,7 +167,7 @@ def far_and_near() -> tuple[Room, list[View]]:
 def test_an_object_seen_only_from_beyond_the_distance_is_not_in_the_map():
     room, views = far_and_near()
     frames = frames_of(views)  # whatever the recogniser thinks of them
-    everything, close = ([t.box for t, _ in ANNOTATOR.observations(frames, limit)] for limit in (math.inf, 3.0))
+    everything, close = (all_boxes(frames, limit) for limit in (math.inf, 3.0))
     wardrobe = room.truth[1]
     assert any(wardrobe.contains(np.array(box.centre), margin=0.3) for box in everything)
     assert all(wardrobe.distance(np.array(box.centre)) > 1.0 for box in close)

@@ -28,7 +28,7 @@ def proposed(*things: Thing) -> tuple[FittedBox, ...]:
     """Boxes in a 5 x 4.4 x 2.6 m room with these things, whatever the recogniser would think of them."""
     room = Room((5, 4.4, 2.6), things)
     views = [view for eye in EYES for view in views_of(room, sweep(eye, yaws=6, pitches=(-35, 5), width=240))]
-    return tuple(thing.box for thing, _ in ANNOTATOR.observations(frames_of(views), math.inf))
+    return tuple(thing.box for thing, _ in ANNOTATOR.observations(ANNOTATOR.evidence(frames_of(views), math.inf)))
 
 
 def best(thing: Thing, boxes: tuple[FittedBox, ...]) -> tuple[float, FittedBox | ObjectBox]:
@@ -124,7 +124,7 @@ def test_a_piece_of_a_larger_thing_goes_on_beyond_its_ends_and_a_thing_of_its_ow
     def measured(length: float) -> np.ndarray:
         members = np.flatnonzero(np.abs(points[:, 0]) < length / 2)
         box = FittedBox((0, 0, 0.69), (length, 0.62, 0.06), 0.0, members)
-        return surroundings([box], [seen], points, colours, building)[0]
+        return surroundings(box, seen, [], np.arange(len(points)), points, colours, building)
 
     whole, piece = measured(2.02), measured(0.8)
     assert whole.shape == (FEATURES,)

@@ -250,7 +250,7 @@ def test_nameless_pillars_are_dropped_and_named_tall_things_stay(size):
 
 def observed(relief: float, support: Support = Support.SURFACE) -> Observation:
     nothing = np.zeros(0, np.float32)
-    return Observation(box(0), support, (), nothing, relief, "grey", nothing, nothing, nothing)
+    return Observation(box(0), support, nothing, relief, nothing)
 
 
 def test_of_a_nameless_thing_at_a_wall_more_than_a_flat_face_must_be_seen():
