@@ -16,23 +16,18 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import torch
 from annotation import Scene, described, generated, in_opening, score_boxes, see_both_passes
 from torch import nn
 
-from flymirage_core.annotation.appearance import FEATURES, Observation, mirrored, reversed_depth
-from flymirage_core.annotation.carving import Detections
+from flymirage_core.annotation.appearance import FEATURES, mirrored, reversed_depth
 from flymirage_core.annotation.embedded import EmbeddedAnnotator
 from flymirage_core.annotation.fused_points import frames_of
-from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.labels import UNKNOWN
 from flymirage_core.annotation.naming import MAX_LEFT_OVER
 from flymirage_core.annotation.recogniser import CLIP, Recogniser, recogniser_of
-from flymirage_core.annotation.regrouping import Belief, believed
-from flymirage_core.rendering.views import View
 from flymirage_core.scene.description import SceneDescription
 from flymirage_core.scene.design import PlannedObject
 from flymirage_core.scene.keys import rng
@@ -58,8 +53,6 @@ NO_CHANCE = -12.0  # logit of a class that a network does not know
 NOISE = 0.1  # standard deviations, on every feature
 SHOWN, SHOWN_LARGE = 26, 10  # nouns in a showroom: in a hall, in a yard
 LARGEST_IN_HALL = 2.8  # metres
-TRIED_STEP = 2  # of the boxes that were tried, every so many
-BAD_FIT, GOOD_FIT = 0.25, 0.4  # IoU with the best object, below and from which such a box is none or that one
 LEFT_OVER = ""  # the noun of a box that is no object of its own
 WANTED = {"noun": 0.90, "family": 0.88, "material": 0.85}  # of what is said on held-out worlds, so much must be right
 LEAST = 0.25  # probability; there are nouns that it never saw, which calibration knows too few of
@@ -139,50 +132,24 @@ def showroom(key: str, wanted: Sequence[str]) -> SceneDescription:
 
 
 def collect_world(scene: Scene, folder: Path, settings: Settings) -> None:
-    """One file: what the annotator makes of a world in both passes; see `examples_of`."""
+    """One file: features, nouns and materials of the boxes that the annotator makes of a world in both passes."""
     annotator = EmbeddedAnnotator(settings.annotation)
     seen = see_both_passes(scene, annotator, settings)
-    passes = (seen.orbit_views, math.inf), (seen.all_views, settings.targets.near_distance)
-    rows = [row for views, distance in passes for row in examples_of(scene, annotator, views, distance)]
+    features, nouns, materials = [], [], []
+    for views, distance in ((seen.orbit_views, math.inf), (seen.all_views, settings.targets.near_distance)):
+        found = [thing for thing, _ in annotator.observations(annotator.evidence(frames_of(views), distance))]
+        boxes = [thing.box for thing in found]
+        matches = {b: scene.truth[t] for t, b, _ in score_boxes(boxes, scene.truth, 0.25)}
+        features += [thing.features for thing in found]
+        nouns += [matches[b].noun if b in matches else opening_noun(x, scene.openings) for b, x in enumerate(boxes)]
+        materials += [kind_of_material(matches[b].material) if b in matches else "" for b in range(len(boxes))]
     np.savez_compressed(
         folder / f"{scene.name}.npz",
-        features=np.stack([features for features, _, _ in rows]),
-        nouns=np.array([noun for _, noun, _ in rows]),
-        materials=np.array([material for _, _, material in rows]),
+        features=np.stack(features),
+        nouns=np.array(nouns),
+        materials=np.array(materials),
     )
-    print(f"{scene.name}: {len(rows)} boxes, {sum(noun != LEFT_OVER for _, noun, _ in rows)} with names", flush=True)
-
-
-def examples_of(
-    scene: Scene, annotator: EmbeddedAnnotator, views: Sequence[View], distance: float
-) -> Iterable[tuple[np.ndarray, str, str]]:
-    """Features, noun and material of the boxes that the annotator makes, and of those that it tries.
-
-    What was tried has the name of the object that it fits; what fits one badly teaches nothing.
-    """
-    tried: list[Observation] = []
-
-    def judge(observed: Sequence[tuple[Observation, Detections] | None]) -> list[Belief]:
-        tried.extend(pair[0] for pair in observed if pair is not None)
-        return believed(observed)
-
-    made = [thing for thing, _ in annotator.observations(annotator.evidence(frames_of(views), distance), judge=judge)]
-    boxes = [thing.box for thing in made]
-    matches = {b: scene.truth[t] for t, b, _ in score_boxes(boxes, scene.truth, 0.25)}
-    for b, thing in enumerate(made):
-        yield thing.features, *names_of(matches.get(b), thing, scene)
-    for thing in tried[::TRIED_STEP]:
-        ious = [yaw_iou(thing.box, known) for known in scene.truth]
-        best = int(np.argmax(ious))
-        if ious[best] < BAD_FIT or ious[best] >= GOOD_FIT:
-            yield thing.features, *names_of(scene.truth[best] if ious[best] >= GOOD_FIT else None, thing, scene)
-
-
-def names_of(known: Any, thing: Observation, scene: Scene) -> tuple[str, str]:
-    """Noun and kind of material of a box that is the ``known`` object, or none."""
-    if known is None:
-        return opening_noun(thing.box, scene.openings), ""
-    return known.noun, kind_of_material(known.material)
+    print(f"{scene.name}: {len(nouns)} boxes, {sum(noun != LEFT_OVER for noun in nouns)} with names", flush=True)
 
 
 def opening_noun(box: object, openings: Sequence[np.ndarray]) -> str:

@@ -24,6 +24,8 @@ SHAPE_CELLS: Final = (5, 5, 8)
 """Cells of the grid in the box, along its longer side, its shorter side and z."""
 CROP: Final = 24
 """Pixels of a crop's side."""
+MAX_SAMPLES: Final = 48
+"""Pixels of a window's shorter side that are looked at, at least, before they become a crop."""
 CROP_CELLS: Final = 6
 EDGE_CELLS: Final = 4
 EDGE_ANGLES: Final = 6
@@ -209,10 +211,11 @@ def _crop(box: FittedBox, frame: Frame) -> tuple[Float32, Float32] | None:
     if window is None:
         return None
     left, top, right, bottom = window
-    rgb, depth = frame.rgb[top:bottom, left:right], frame.depth[top:bottom, left:right]
+    step = max(1, min(right - left, bottom - top) // MAX_SAMPLES)
+    rgb, depth = frame.rgb[top:bottom:step, left:right:step], frame.depth[top:bottom:step, left:right:step]
     k, pose = frame.camera.intrinsics, frame.camera.T_world_camera
-    x = (np.arange(left, right) + 0.5 - k.cx) / k.fx
-    y = (np.arange(top, bottom) + 0.5 - k.cy) / k.fy
+    x = (np.arange(left, right, step) + 0.5 - k.cx) / k.fx
+    y = (np.arange(top, bottom, step) + 0.5 - k.cy) / k.fy
     rays = np.stack(np.broadcast_arrays(x[None], y[:, None], 1.0), axis=-1)  # (h, w, 3)
     away = (rays * depth[..., None]) @ pose[:3, :3].T + pose[:3, 3] - box.centre
     c, s = np.cos(box.yaw), np.sin(box.yaw)

@@ -60,13 +60,14 @@ class Detections:
 
 def hits(points: Float32, frames: Sequence[Frame]) -> NDArray[np.bool_]:
     """(N, F) which frames hit which points (N, 3)."""
-    out = np.zeros((len(points), len(frames)), bool)
-    if len(points):
-        groups = _Groups.in_blocks(points)
-        for f, frame in enumerate(frames):
-            votes = np.zeros((len(points), 2), np.int32)
-            _vote(groups.points, groups.starts, groups.shown_in(frame), frame.depth, *_projection(frame), votes)
-            out[groups.order, f] = votes[:, 0] > 0
+    hit = np.zeros((len(points), len(frames)), bool)
+    if not len(points):
+        return hit
+    groups = _Groups.in_blocks(points)
+    for f, frame in enumerate(frames):
+        _mark(groups.points, groups.starts, groups.shown_in(frame), frame.depth, *_projection(frame), hit[:, f])
+    out = np.empty_like(hit)
+    out[groups.order] = hit
     return out
 
 
@@ -157,6 +158,22 @@ def _vote(
                 votes[n, 0] += 1
             elif gap > tolerance:
                 votes[n, 1] += 1
+
+
+@numba.njit(cache=True, nogil=True)
+def _mark(
+    points: Float32,
+    starts: NDArray[np.intp],
+    groups: NDArray[np.intp],
+    depth: Float32,
+    matrix: Float32,
+    lens: Float32,
+    hit: NDArray[np.bool_],
+) -> None:
+    for g in groups:
+        for n in range(starts[g], starts[g + 1]):
+            gap, tolerance = _surface_gap(points[n], depth, matrix, lens)
+            hit[n] = abs(gap) <= tolerance
 
 
 @numba.njit(cache=True, nogil=True)

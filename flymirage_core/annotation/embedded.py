@@ -36,7 +36,7 @@ from flymirage_core.annotation.parts import PartSet, Surface
 from flymirage_core.annotation.picture_joins import join_pieces
 from flymirage_core.annotation.picture_votes import Vote, look_at, visible_windows, votes
 from flymirage_core.annotation.plausibility import MIN_OBJECT_POINTS, is_thing, without_contents
-from flymirage_core.annotation.regrouping import Judge, believed, regrouped
+from flymirage_core.annotation.regrouping import regrouped
 from flymirage_core.annotation.room_structure import RoomStructure, find_structure
 from flymirage_core.annotation.rows import in_row
 from flymirage_core.annotation.segmentation import (
@@ -117,14 +117,14 @@ class EmbeddedAnnotator:
         return Evidence(cloud, coarse, structure, frames, max_distance, proposals)
 
     def observations(
-        self, evidence: Evidence, pictures: Sequence[Sequence[PictureDetection]] = (), judge: Judge = believed
+        self, evidence: Evidence, pictures: Sequence[Sequence[PictureDetection]] = ()
     ) -> list[tuple[Observation, Detections]]:
         """The boxes of the objects, with what names are judged by and how each was seen; see `annotate`.
 
-        ``pictures``: what a 2D detector found in each frame, if there is one. ``judge``: see `regrouped`.
+        ``pictures``: what a 2D detector found in each frame, if there is one.
         """
         structure, frames = evidence.structure, evidence.frames
-        boxes = regrouped(evidence, judge)
+        boxes = regrouped(evidence)
         boxes = with_crowns(with_backs(boxes, structure, frames), evidence.coarse, structure)
         if pictures:
             boxes = join_pieces(boxes, evidence.cloud, structure, frames, pictures)

@@ -13,6 +13,7 @@ from flymirage_core.annotation.box_fitting import FittedBox, on_floor
 from flymirage_core.annotation.carving import Detections, detections, hits
 from flymirage_core.annotation.colours import shading_free, to_lab
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
+from flymirage_core.annotation.fusion import plan_gap
 from flymirage_core.annotation.labels import Support
 from flymirage_core.annotation.light import Light, light_of, seen_colour
 from flymirage_core.annotation.normals import surface_shape
@@ -134,8 +135,7 @@ class Evidence:
 
 def _meet(a: FittedBox, b: FittedBox) -> bool:
     """Whether two boxes may touch, or rest on each other."""
-    reach = (np.hypot(*a.size[:2]) + np.hypot(*b.size[:2])) / 2 + RESTING
-    return bool(a is not b and np.hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) < reach)
+    return a is not b and plan_gap(a, b) < RESTING
 
 
 def best_views(box: FittedBox, hits: NDArray[np.int64], frames: Sequence[Frame]) -> list[int]:

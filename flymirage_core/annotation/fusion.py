@@ -4,6 +4,7 @@ A detector that answers view by view (Boxer) goes through `prune_by_distance` an
 annotator fuses evidence before it makes boxes and uses the IoU only.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -53,8 +54,16 @@ def footprint_corners(box: GravityAlignedBox) -> NDArray[np.float64]:
     return np.asarray(half @ np.array([[c, s], [-s, c]]) + box.centre[:2], np.float64)
 
 
+def plan_gap(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
+    """Metres between the circles round two plans, which are apart if it is positive."""
+    reach = (math.hypot(*a.size[:2]) + math.hypot(*b.size[:2])) / 2
+    return math.hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) - reach
+
+
 def footprint_overlap(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
     """Square metres that the two plans share."""
+    if plan_gap(a, b) >= 0:
+        return 0.0
     return convex_overlap(footprint_corners(a), footprint_corners(b))
 
 
@@ -67,8 +76,7 @@ def yaw_iou(a: GravityAlignedBox, b: GravityAlignedBox) -> float:
     """Intersection over union of two gravity-aligned boxes, exact, 0 to 1."""
     bottom = max(a.centre[2] - a.size[2] / 2, b.centre[2] - b.size[2] / 2)
     top = min(a.centre[2] + a.size[2] / 2, b.centre[2] + b.size[2] / 2)
-    reach = (np.hypot(*a.size[:2]) + np.hypot(*b.size[:2])) / 2
-    if top <= bottom or np.hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) >= reach:
+    if top <= bottom or plan_gap(a, b) >= 0:
         return 0.0
     shared = footprint_overlap(a, b) * (top - bottom)
     union = float(np.prod(a.size) + np.prod(b.size)) - shared

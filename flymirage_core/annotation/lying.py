@@ -26,8 +26,6 @@ MAX_LYING: Final = 0.045
 FLOOR_DEPTH: Final = 0.2
 """Metres below the upper limit of a floor within which its points are."""
 RUG_THICKNESS: Final = 0.015
-MIN_STEP: Final = 0.025
-"""Metres above what is beside it from which a rug is a mat that is as thick as that."""
 RIM: Final = (0.08, 0.3)
 """Metres beyond a flat region between which that is."""
 MIN_RUG: Final = 0.4
@@ -123,9 +121,8 @@ def rugs(regions: Sequence[Region], boxes: Sequence[FittedBox], structure: RoomS
             continue
         if any(on_floor(box, structure) and _covers(box, region) for box in boxes):
             continue
-        top = region.height - SEEN_TOO_HIGH
-        bottom = region.around - SEEN_TOO_HIGH if region.height - region.around > MIN_STEP else top
-        found.append(_flat_box(region, bottom, max(RUG_THICKNESS, top - bottom)))
+        bottom = min(region.height, region.around) - SEEN_TOO_HIGH
+        found.append(_flat_box(region, bottom, max(RUG_THICKNESS, region.height - region.around)))
     return found
 
 

@@ -3,6 +3,7 @@
 No rule joins what stands on different supports (`Part.thing`), but for lamps whose pole was lost.
 """
 
+import math
 from itertools import combinations
 from typing import Final
 
@@ -201,6 +202,9 @@ def _one_stand(lower: Part, upper: Part) -> bool:
 
 def _foot_and_shade(foot: Part, shade: Part) -> bool:
     """Whether one is right above the other, both small, the foot on the floor or a support, the shade on nothing."""
+    slant = math.hypot(foot.centre[0] - shade.centre[0], foot.centre[1] - shade.centre[1])
+    if slant > POLE_SLANT:
+        return False
     gap = float(shade.lower[2] - foot.upper[2])
     max_gap = MAX_TABLE_POLE_GAP if foot.thing else MAX_POLE_GAP
     return bool(
@@ -208,7 +212,6 @@ def _foot_and_shade(foot: Part, shade: Part) -> bool:
         and not shade.thing
         and shade.clearance > SHADE_CLEARANCE
         and -NEAR < gap < max_gap
-        and np.linalg.norm(foot.centre[:2] - shade.centre[:2]) <= POLE_SLANT
         and max(foot.extent[:2].max(), shade.extent[:2].max()) <= MAX_LAMP_SIDE
         and foot.table[0] < SUPPORT_AREA
     )
@@ -298,18 +301,26 @@ def _next_frame(a: Part, b: Part) -> bool:
 
 def _join_contents(parts: PartSet) -> None:
     """What lies inside a shelf or a frame that encloses it on several sides."""
+    bodies = _longest_first(parts)
     for j in sorted(parts.parts, key=lambda k: (len(parts.parts[k]), k)):
         piece = parts.parts[j]
         if piece.extent.max() > MAX_CONTENT:
             continue
-        for i in sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k)):
+        for i in bodies:
+            if len(parts.parts[i]) < MIN_CONTAINER * len(piece):
+                break
             if i != j and _encloses(parts.parts[i], piece):
-                parts.join(i, j)
+                parts.join(i, j)  # keeps i, the larger
+                bodies = _longest_first(parts)
                 break
 
 
+def _longest_first(parts: PartSet) -> list[int]:
+    return sorted(parts.parts, key=lambda k: (-len(parts.parts[k]), k))
+
+
 def _encloses(body: Part, piece: Part) -> bool:
-    if body.thing != piece.thing or len(body) < MIN_CONTAINER * len(piece):
+    if body.thing != piece.thing:
         return False
     if piece.lower[2] < body.lower[2] - BLUR or piece.upper[2] > body.upper[2] + BLUR:
         return False

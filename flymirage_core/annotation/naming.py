@@ -34,12 +34,12 @@ NEAR_ENOUGH: Final = 3.0
 """Metres; what no view saw from so near, as in the first pass, is judged more gently."""
 MAX_LEFT_OVER_AFAR: Final = 0.9
 """The probability from which that is dropped."""
-LEAST_UNNAMED: Final = (0.10, 0.15)
+LEAST_UNNAMED: Final = (0.05, 0.1)
 """Metres: least thickness (but flat on a wall) and least second longest side of a thing that nobody has a name for;
 what is thinner is a slat, a frame, a strip."""
 MIN_VIEWS: Final = 4
 """Views that must have seen a thing that nobody has a name for, ..."""
-SURELY_A_THING: Final = 0.5
+SURELY_A_THING: Final = 0.6
 """... unless it is no left-over for all that the recogniser knows; so may be what is thin."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""

@@ -57,19 +57,19 @@ class Part:
     def bounds(self) -> Float32:
         return np.asarray(np.percentile(self.points, (1, 99), axis=0))  # (2, 3)
 
-    @property
+    @cached_property
     def lower(self) -> Float32:
         return np.asarray(self.bounds[0])
 
-    @property
+    @cached_property
     def upper(self) -> Float32:
         return np.asarray(self.bounds[1])
 
-    @property
+    @cached_property
     def centre(self) -> Float32:
         return np.asarray(self.bounds.mean(axis=0))
 
-    @property
+    @cached_property
     def extent(self) -> Float32:
         return np.asarray(self.bounds[1] - self.bounds[0])
 

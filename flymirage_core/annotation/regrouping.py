@@ -31,6 +31,10 @@ DOUBTED: Final = 0.2
 """Probability of being a left-over from which a box may be cut, ..."""
 WELL_KNOWN: Final = 0.7
 """... unless its name is likelier than this."""
+HOPELESS: Final = 0.88
+"""Probability of being left-overs from which nothing comes of boxes."""
+CERTAIN: Final = 0.95
+"""Probability of a name that nothing makes likelier."""
 MIN_CUT: Final = 0.4
 """Metres of the longest side of what may be cut."""
 MIN_CUT_POINTS: Final = 80
@@ -136,7 +140,7 @@ def _cut(known: Known, fresh: Sequence[int], evidence: Evidence, judge: Judge) -
 
 def _may_be_cut(box: FittedBox, belief: Belief) -> bool:
     large = max(box.size) > MIN_CUT and len(box.members) > MIN_CUT_POINTS and not box.on_wall
-    return large and belief.left_over > DOUBTED and belief.name < WELL_KNOWN
+    return large and DOUBTED < belief.left_over < HOPELESS and belief.name < WELL_KNOWN
 
 
 def _gain_of_cut(whole: Belief, a: Belief, b: Belief) -> float:
@@ -153,21 +157,22 @@ def _cuts(box: FittedBox, points: Float32, colours: Float32) -> list[Bool]:
     found = []
     for axis in range(3):
         slices = ((local[:, axis] - local[:, axis].min()) / SLICE).astype(int)  # (M,)
-        changes = _changes(slices, np.delete(local, axis, axis=1), colours)
+        changes, wider = _changes(slices, np.delete(local, axis, axis=1), colours)
         taken: list[int] = []
         for k in np.argsort(-changes, kind="stable"):
             if changes[k] < MIN_CHANGE or len(taken) == CUTS_AN_AXIS:
                 break
             if all(abs(k - other) >= APART for other in taken):
                 taken.append(int(k))
-        found += [(float(changes[k]), slices < k) for k in taken]
+        found += [(float(changes[k]), slices < k - wider[k]) for k in taken]
     found.sort(key=lambda cut: -cut[0])
     return [side for _, side in found[:CUTS] if min(side.sum(), (~side).sum()) >= MIN_OBJECT_POINTS]
 
 
-def _changes(slices: NDArray[np.intp], across: Float64, colours: Float32) -> Float64:
+def _changes(slices: NDArray[np.intp], across: Float64, colours: Float32) -> tuple[Float64, NDArray[np.int64]]:
     """(K,) how much outline, colour and fullness change where each of the K slices begins; 0 near both ends.
 
+    And (K,) 1 where the outline is wider behind that, else -1: the end of the wider side is about there.
     ``across``: (M, 2) the other two coordinates.
     """
     count = int(slices.max()) + 1
@@ -187,7 +192,8 @@ def _changes(slices: NDArray[np.intp], across: Float64, colours: Float32) -> Flo
     changes = np.asarray(moved + step + np.maximum(dip, 0))
     changes[: WINDOW + 1] = 0
     changes[-WINDOW:] = 0
-    return changes
+    wider = np.where((high_b - low_b).prod(axis=1) > (high_a - low_a).prod(axis=1), 1, -1)
+    return changes, wider
 
 
 def _outline(sums: Float64) -> tuple[Float64, Float64, Float64]:
@@ -235,6 +241,8 @@ def _may_be_one(a: tuple[FittedBox, Belief], b: tuple[FittedBox, Belief], longes
     if np.hypot(box.centre[0] - other.centre[0], box.centre[1] - other.centre[1]) > longest:
         return False
     if max(box.bottom, other.bottom) - min(box.top, other.top) >= TOUCH:
+        return False
+    if min(belief.left_over, view.left_over) > HOPELESS or max(belief.name, view.name) > CERTAIN:
         return False
     if belief.noun != view.noun and max(belief.left_over, view.left_over) < KNOWN:
         return False

@@ -220,7 +220,7 @@ def _usual(mine: Bool, labels: NDArray[np.int32], image: Float32) -> Bool:
     """(H, W) cells of a stretch that are its largest region, or that resemble most of it: bricks make no region."""
     weights = ndimage.uniform_filter(mine.astype(np.float32), PATTERN)
     sums = ndimage.uniform_filter(np.where(mine[..., None], image, 0), (PATTERN, PATTERN, 1))
-    even = sums / np.maximum(weights, 1e-6)[..., None]  # (H, W, 4), in which bricks are no more
+    even = (sums / np.maximum(weights, 1e-6)[..., None]).astype(np.float32)  # (H, W, 4), in which bricks are no more
     away = _from_most(mine, even)
     odd = away >= MAX_PATTERN * np.median(away[mine])
     bare = mine & ~ndimage.binary_opening(odd, np.ones((3, 3), bool))
