@@ -28,6 +28,8 @@ FLOOR_DEPTH: Final = 0.2
 RUG_THICKNESS: Final = 0.015
 RIM: Final = (0.08, 0.3)
 """Metres beyond a flat region between which that is."""
+MIN_MAT: Final = 0.025
+"""Metres above what is beside it from which what lies on the floor is a mat, as thick as that."""
 MIN_RUG: Final = 0.4
 MAX_RUG: Final = 2.6
 """Metres of a rug's shorter side, at least and at most."""
@@ -121,8 +123,9 @@ def rugs(regions: Sequence[Region], boxes: Sequence[FittedBox], structure: RoomS
             continue
         if any(on_floor(box, structure) and _covers(box, region) for box in boxes):
             continue
-        bottom = min(region.height, region.around) - SEEN_TOO_HIGH
-        found.append(_flat_box(region, bottom, max(RUG_THICKNESS, region.height - region.around)))
+        raised = region.height - region.around
+        bottom, thickness = (region.around, raised) if raised > MIN_MAT else (region.height, RUG_THICKNESS)
+        found.append(_flat_box(region, bottom - SEEN_TOO_HIGH, thickness))
     return found
 
 

@@ -70,6 +70,18 @@ def test_a_rug_is_a_thing_and_bare_floor_is_none():
     assert proposed() == ()
 
 
+def test_a_mat_is_as_thick_as_it_stands_above_the_floor():
+    mat = block("mat", (0.6, 0.4, 0), (1.8, 1.2, 0.06), BLUE)
+    assert best(mat, proposed(mat))[0] > 0.5
+
+
+def test_the_feet_of_a_sign_that_is_nearly_nothing_in_plan_belong_to_it():
+    panel = Body((0, 0, 0.8), (0.8, 0.05, 1.5), BLUE)
+    feet = [Body((x, 0, 0.015), (0.08, 0.4, 0.03), BLUE) for x in (-0.3, 0.3)]
+    sign = Thing("sign", (0.5, 0.4, 0), 0.0, (panel, *feet))
+    assert best(sign, proposed(sign))[0] > 0.5
+
+
 def test_the_plate_under_a_cone_belongs_to_it():
     plate, body = Body((0, 0, 0.015), (0.4, 0.4, 0.03), ORANGE), Body((0, 0, 0.33), (0.26, 0.26, 0.6), ORANGE)
     cone = Thing("cone", (0.6, 0.5, 0), 0.0, (plate, body))
