@@ -30,7 +30,7 @@ def scene_annotation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return PosedViews.write(stage.scratch, cameras, track(pictures, "views", len(cameras)), elevations)
 
     @product_asset(
-        version="8",
+        version="9",
         group=group,
         settings=settings,
         sections=["annotation"],
@@ -65,7 +65,7 @@ def scene_annotation_assets(settings: Settings) -> list[dg.AssetsDefinition]:
         return PosedViews.write(stage.scratch, cameras, track(pictures, "views", len(cameras)), paths)
 
     @product_asset(
-        version="8",
+        version="9",
         group=group,
         settings=settings,
         sections=["annotation", "targets"],

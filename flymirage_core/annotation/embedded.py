@@ -73,7 +73,7 @@ FULL_EVIDENCE: Final = 12
 class EmbeddedAnnotator:
     """Implements `Annotator`. Deterministic: same views, same settings, same bytes."""
 
-    version = "8"
+    version = "9"
 
     def __init__(self, settings: AnnotationSettings, detector: YoloxDetector | None = None) -> None:
         self.settings = settings
