@@ -86,7 +86,15 @@ def on_plates(
 ) -> list[FittedBox]:
     """The boxes, those on the floor with the plate or feet that were culled with the floor, known by their colour."""
     floor = np.flatnonzero(building & (points[:, 2] < structure.floor_top.at(points)))
-    return [_on_plate(box, floor, points, colours) if on_floor(box, structure) else box for box in boxes]
+    floor = floor[np.argsort(points[floor, 0], kind="stable")]
+    east = points[floor, 0]
+
+    def beside(box: FittedBox) -> NDArray[np.intp]:
+        """Floor as far east as a box and what is round it."""
+        reach = max(box.size[:2]) + 2 * BASE_RIM
+        return np.sort(floor[slice(*np.searchsorted(east, (box.centre[0] - reach, box.centre[0] + reach)))])
+
+    return [_on_plate(box, beside(box), points, colours) if on_floor(box, structure) else box for box in boxes]
 
 
 def _on_plate(box: FittedBox, floor: NDArray[np.intp], points: Float32, colours: Float32) -> FittedBox:

@@ -63,6 +63,8 @@ MAX_TABLE_POLE_GAP: Final = 0.25
 """The same on a table."""
 MAX_CANOPY_GAP: Final = 0.5
 """The same under a canopy that is much wider than its pole."""
+FAR_OFF: Final = 0.5
+"""Metres beyond a shade's own width, from whose middle a foot is not looked at."""
 POLE_SLANT: Final = 0.12
 """Metres between the middles of foot and shade."""
 MAX_LAMP_SIDE: Final = 0.75
@@ -183,10 +185,13 @@ def _held_up(pole: Part, canopy: Part, gap: float) -> bool:
 def _join_lost_poles(parts: PartSet) -> None:
     """A foot on the floor and a shade right above it, whose pole no view resolved."""
     order = sorted(parts.parts, key=lambda k: (float(parts.parts[k].centre[2]), k))
+    middles = np.array([parts.parts[k].centre[:2] for k in order]).reshape(-1, 2)  # (P, 2)
+    reaches = np.array([float(np.hypot(*parts.parts[k].extent[:2])) for k in order]) + FAR_OFF  # (P,)
     for n, i in enumerate(order):
         if i not in parts.parts or not _is_foot(parts.parts[i]):
             continue
-        for j in order[n + 1 :]:
+        away = np.linalg.norm(middles[n + 1 :] - parts.parts[i].centre[:2], axis=1)
+        for j in (order[n + 1 + m] for m in np.flatnonzero(away < reaches[n + 1 :])):
             if j in parts.parts and _one_stand(parts.parts[i], parts.parts[j]) and not _between(parts, i, j):
                 i = parts.join(i, j)
 
