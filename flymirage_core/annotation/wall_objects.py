@@ -36,6 +36,10 @@ MAX_RELIEF: Final = 0.007
 """... if one is no more metres before the other: a white board on a white wall is not."""
 MIN_BARE_SHARE: Final = 0.3
 """Of the cells of a stretch of wall seen in one piece; its largest region is bare wall if it has this share."""
+NECK: Final = 5
+"""Cells; what is narrower joins two things, ..."""
+ROUNDED: Final = 2.5
+"""... but so near to a wider part it is a corner of that."""
 REFITS: Final = 4
 MOST: Final = 2.0
 """Of the median step: what is farther from the usual looks of a stretch tells nothing of them."""
@@ -140,7 +144,7 @@ def flat_things(
     looks = np.concatenate([colours, relief], axis=1)  # (N, 4), in colour steps
     seen, image = _raster(row, column, looks, (int(row.max()) + 1, int(column.max()) + 1))
     regions = _things(seen, image, framed)
-    for k in range(1, regions.max() + 1):
+    for k in np.unique(regions[regions > 0]):
         rows, columns = (_full(a) for a in np.nonzero(regions == k))
         corner = float(origin[0] + columns[0] * CELL), float(origin[1] + rows[0] * CELL)
         sides = float(len(columns) * CELL), float(len(rows) * CELL)
@@ -197,8 +201,20 @@ def _things(seen: Bool, image: Float32, framed: bool) -> NDArray[np.intp]:
         if min(rims[place].shape) * CELL <= MAX_SHORT_SIDE:  # larger ones are corners of the room
             other[place] |= ndimage.binary_fill_holes(rims[place] == k)
     other &= ~ndimage.binary_opening(other & ~seen, kernel)
-    other = ndimage.binary_opening(other, kernel)
-    return np.asarray(ndimage.label(other, kernel)[0], np.intp)
+    return _apart(ndimage.binary_opening(other, kernel), kernel)
+
+
+def _apart(other: Bool, kernel: Bool) -> NDArray[np.intp]:
+    """(H, W) number of the thing of each cell that is none of the wall; a neck joins two things and belongs to neither.
+
+    A clock beside a door touches it by a few cells; what is as narrow as that all over is a thing of its own.
+    """
+    regions = ndimage.label(other, kernel)[0]
+    cores, count = ndimage.label(ndimage.binary_opening(other, np.ones((NECK, NECK), bool)), kernel)
+    away, nearest = ndimage.distance_transform_edt(cores == 0, return_indices=True)
+    number = np.where(away <= ROUNDED, cores[tuple(nearest)], 0) * other
+    narrow = other & ~np.isin(regions, np.unique(regions[cores > 0]))
+    return np.asarray(np.where(narrow, regions + count, number), np.intp)
 
 
 def _bare(seen: Bool, labels: NDArray[np.int32], image: Float32) -> Bool:
