@@ -1,8 +1,8 @@
 """`EmbeddedAnnotator`: objects from pixels and depth alone, with no network and no GPU.
 
 Fuse the pixels of all views, take the building away, cut what is left by support and colour, join what belongs
-together, fit boxes, name them by a small recogniser and, if its weights were fetched, a 2D detector. Each step is a
-file of this room.
+together, fit boxes, cut and join those by what a small recogniser thinks of the pieces and the whole, name them by it
+and, if its weights were fetched, a 2D detector. Each step is a file of this room.
 """
 
 from collections.abc import Iterable, Sequence

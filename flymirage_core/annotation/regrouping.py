@@ -51,9 +51,8 @@ COLOUR: Final = 15.0
 MIN_CHANGE: Final = 3.0
 APART: Final = 6
 """Slices between two cuts."""
-CUTS_AN_AXIS: Final = 2
-CUTS: Final = 3
-"""Places at which a box is cut on trial, at most; CUTS_AN_AXIS of them along one axis."""
+CUTS, CUTS_AN_AXIS = 3, 2
+"""Places at which a box is cut on trial, at most, so many of them along one axis."""
 TOUCH: Final = 0.1
 """Metres between what may be one thing."""
 KNOWN: Final = 0.3
