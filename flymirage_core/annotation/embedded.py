@@ -29,7 +29,7 @@ from flymirage_core.annotation.fused_points import Frame, FusedPoints, frames_of
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.lying import floor_regions, lying_on, on_plates, rugs
 from flymirage_core.annotation.merging import merge_parts
-from flymirage_core.annotation.naming import Name, is_bare_front, is_believed, named
+from flymirage_core.annotation.naming import ALONE, BESIDE_DETECTOR, Name, is_bare_front, is_believed, named
 from flymirage_core.annotation.normals import surface_normals
 from flymirage_core.annotation.open_air import find_open_air, sees_sky
 from flymirage_core.annotation.parts import PartSet, Surface
@@ -100,10 +100,11 @@ class EmbeddedAnnotator:
             windows = visible_windows([thing.points for thing in things], frames)
             said = votes([thing.box for thing in things], windows, pictures)
         names = named(things, said)
+        doubt = BESIDE_DETECTOR if pictures else ALONE
         kept = [
             (t, s, n)
             for (t, s), n in zip(found, names, strict=True)
-            if is_believed(t.box, n, s) and not is_bare_front(t, n)
+            if is_believed(t.box, n, s, doubt) and not is_bare_front(t, n, doubt)
         ]
         annotator = f"{self.name} {self.version}"
         return BoxMap(tuple(_object_box(k, evidence, *thing, annotator) for k, thing in enumerate(kept)))

@@ -22,10 +22,8 @@ HALF_VOTE: Final = 1.5
 """Weight of votes that is worth a score of one half."""
 
 
-MAX_LEFT_OVER: Final = 0.75
+MAX_LEFT_OVER: Final = 0.76
 """Probability of being no object of its own from which a box that the detector does not know is dropped."""
-MAX_LEFT_OVER_NAMELESS: Final = 0.72
-"""The same of a box that nobody has a name for."""
 BULKY: Final = 0.4
 """Metres; unless it is as thick as this ..."""
 WELL_SEEN: Final = 24
@@ -34,27 +32,38 @@ NEAR_ENOUGH: Final = 3.0
 """Metres; what no view saw from so near, as in the first pass, is judged more gently."""
 MAX_LEFT_OVER_AFAR: Final = 0.9
 """The probability from which that is dropped."""
-LEAST_UNNAMED: Final = (0.05, 0.1)
-"""Metres: least thickness (but flat on a wall) and least second longest side of a thing that nobody has a name for;
-what is thinner is a slat, a frame, a strip."""
+LEAST_THICKNESS: Final = 0.04
+"""Metres of a thing that nobody has a name for, unless it is flat on a wall; what is thinner is a slat, a strip."""
 MIN_VIEWS: Final = 4
-"""Views that must have seen a thing that nobody has a name for, ..."""
-SURELY_A_THING: Final = 0.6
-"""... unless it is no left-over for all that the recogniser knows; so may be what is thin."""
+"""Views that must have seen a thing that nobody has a name for, unless it surely is one."""
 PANEL: Final = 2.0
 """Metres of the longest side from which a nameless flat thing on a wall is a part of the wall."""
 PILLAR: Final = (2.2, 0.8)
 """Metres of height from which, and of the shorter side up to which, a nameless thing is a pillar, a door, a post ..."""
 LIKE_A_PILLAR: Final = 0.25
 """... from this left-over probability on."""
-BARE_FRONT: Final = (0.05, 0.35)
-"""Metres of relief up to which only a face flush with its wall was seen of a thing above the floor, and the left-over
-probability from which that is a panel of the wall, a headboard behind pillows, if nobody has a name for it."""
+BARE_FRONT: Final = 0.05
+"""Metres of relief up to which only a face flush with its wall was seen of a thing above the floor: a panel of the
+wall, a headboard behind pillows, if nobody has a name for it."""
 TELEVISION: Final = "television"
 BUILDING: Final = frozenset({"door", "window"})
 """What has a name, but is no thing."""
 LIKELY: Final = 0.5
 """Score of a name below which a box counts as nameless when it is judged whether it is a part of the building."""
+
+
+@dataclass(frozen=True)
+class Doubt:
+    """Left-over probabilities from which a box that nobody has a name for is dropped."""
+
+    nameless: float
+    unsure: float  # ... if it is thin or few views saw it
+    bare_front: float  # ... if only a flat face was seen of it
+
+
+ALONE: Final = Doubt(0.76, 0.7, 0.5)
+BESIDE_DETECTOR: Final = Doubt(0.72, 0.6, 0.35)
+"""Where a detector looked too, and knew nothing, less is believed."""
 
 
 @dataclass(frozen=True)
@@ -76,15 +85,15 @@ def named(things: Sequence[Observation], votes: Sequence[Vote | None]) -> list[N
     return [chosen_name(r, vote, thing.box) for thing, r, vote in zip(things, recognised, votes, strict=True)]
 
 
-def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
+def is_believed(box: FittedBox, name: Name, seen: Detections, doubt: Doubt = ALONE) -> bool:
     """Whether a box is an object: what the detector knows is; what looks like a left-over is not."""
     if name.source == "detector":
         return True
     if seen.nearest > NEAR_ENOUGH:
         return name.left_over < MAX_LEFT_OVER_AFAR
-    thin, second, longest = sorted(box.size)
+    thin, _, longest = sorted(box.size)
     bulky = thin >= BULKY and seen.views >= WELL_SEEN
-    limit = MAX_LEFT_OVER if name.noun != UNKNOWN else MAX_LEFT_OVER_NAMELESS
+    limit = MAX_LEFT_OVER if name.noun != UNKNOWN else doubt.nameless
     if name.noun in BUILDING or (name.left_over >= limit and not bulky):
         return False
     if name.noun == UNKNOWN and _is_pillar(box) and name.left_over >= LIKE_A_PILLAR:
@@ -93,14 +102,14 @@ def is_believed(box: FittedBox, name: Name, seen: Detections) -> bool:
         return True
     if box.on_wall and longest > PANEL:
         return False
-    slat = second < LEAST_UNNAMED[1] or (thin < LEAST_UNNAMED[0] and not box.on_wall)
-    return name.left_over < SURELY_A_THING or not (slat or seen.views < MIN_VIEWS)
+    slat = thin < LEAST_THICKNESS and not box.on_wall
+    return name.left_over < doubt.unsure or not (slat or seen.views < MIN_VIEWS)
 
 
-def is_bare_front(thing: Observation, name: Name) -> bool:
+def is_bare_front(thing: Observation, name: Name, doubt: Doubt = ALONE) -> bool:
     """Whether nothing but a flat piece of a wall, or of what covers it, was seen."""
     built = thing.support is not Support.FLOOR and not thing.box.on_wall
-    return _is_unsure(name) and built and thing.relief < BARE_FRONT[0] and name.left_over >= BARE_FRONT[1]
+    return _is_unsure(name) and built and thing.relief < BARE_FRONT and name.left_over >= doubt.bare_front
 
 
 def _is_unsure(name: Name) -> bool:

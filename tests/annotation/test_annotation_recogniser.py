@@ -13,7 +13,7 @@ from flymirage_core.annotation.box_fitting import FittedBox
 from flymirage_core.annotation.carving import Detections
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
 from flymirage_core.annotation.labels import UNKNOWN, Support
-from flymirage_core.annotation.naming import Name, agree, chosen_name, is_bare_front, is_believed
+from flymirage_core.annotation.naming import BESIDE_DETECTOR, Name, agree, chosen_name, is_bare_front, is_believed
 from flymirage_core.annotation.picture_joins import join_pieces
 from flymirage_core.annotation.picture_votes import Vote, visible_windows, votes
 from flymirage_core.annotation.recogniser import Recogniser, Recognition, trained_recogniser
@@ -230,8 +230,8 @@ def test_a_flat_thing_on_a_wall_is_no_television_because_the_detector_says_so():
 
 
 def test_nameless_slats_and_wall_panels_are_dropped_but_nameless_things_stay():
-    assert is_believed(box(0), name(left_over=0.65), seen())
-    assert not is_believed(box(0, (0.9, 0.04, 0.6)), name(left_over=0.65), seen())
+    assert is_believed(box(0), name(left_over=0.73), seen())
+    assert not is_believed(box(0, (0.9, 0.03, 0.6)), name(left_over=0.73), seen())
     assert is_believed(box(0, (0.9, 0.05, 0.6)), name(), seen())  # surely a thing, though a thin one
     panel = replace(box(0, (0.9, 0.05, 2.5)), on_wall=True)
     assert not is_believed(panel, name(), seen())
@@ -254,16 +254,25 @@ def observed(relief: float, support: Support = Support.SURFACE) -> Observation:
 
 
 def test_of_a_nameless_thing_at_a_wall_more_than_a_flat_face_must_be_seen():
-    assert is_bare_front(observed(0.03), name(left_over=0.4))
-    assert not is_bare_front(observed(0.2), name(left_over=0.4))
-    assert not is_bare_front(observed(0.03, Support.FLOOR), name(left_over=0.4))
-    assert not is_bare_front(observed(0.03), name("wall shelf", left_over=0.4))
+    assert is_bare_front(observed(0.03), name(left_over=0.55))
+    assert not is_bare_front(observed(0.2), name(left_over=0.55))
+    assert not is_bare_front(observed(0.03, Support.FLOOR), name(left_over=0.55))
+    assert not is_bare_front(observed(0.03), name("wall shelf", left_over=0.55))
     assert not is_bare_front(observed(0.03), name(left_over=0.1))
 
 
+def test_where_a_detector_looked_too_and_knew_nothing_less_is_believed():
+    doubtful = name(left_over=0.74)
+    assert is_believed(box(0), doubtful, seen())
+    assert not is_believed(box(0), doubtful, seen(), BESIDE_DETECTOR)
+    assert is_believed(box(0), replace(name("chair", left_over=0.74), source="detector"), seen(), BESIDE_DETECTOR)
+    assert is_bare_front(observed(0.03), name(left_over=0.4), BESIDE_DETECTOR)
+    assert not is_bare_front(observed(0.03), name(left_over=0.4))
+
+
 def test_a_nameless_thing_needs_several_views_and_a_named_one_or_what_surely_is_a_thing_does_not():
-    assert not is_believed(box(0), name(left_over=0.65), seen(views=3))
-    assert is_believed(box(0), name(left_over=0.65), seen(views=4))
+    assert not is_believed(box(0), name(left_over=0.73), seen(views=3))
+    assert is_believed(box(0), name(left_over=0.73), seen(views=4))
     assert is_believed(box(0), name(left_over=0.1), seen(views=2))
     assert is_believed(box(0), name("vase"), seen(views=1))
 
