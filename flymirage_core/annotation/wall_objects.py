@@ -199,7 +199,7 @@ def _things(seen: Bool, image: Float32, framed: bool) -> NDArray[np.intp]:
     rims = ndimage.label(other | (ndimage.binary_closing(other, kernel) & seen) if framed else other, kernel)[0]
     for k, place in enumerate(ndimage.find_objects(rims), 1):
         if min(rims[place].shape) * CELL <= MAX_SHORT_SIDE:  # larger ones are corners of the room
-            other[place] |= ndimage.binary_fill_holes(rims[place] == k) & (rims[place] != k)  # not what closed its gaps
+            other[place] |= ndimage.binary_fill_holes(rims[place] == k)
     other &= ~ndimage.binary_opening(other & ~seen, kernel)
     return _apart(ndimage.binary_opening(other, kernel), kernel)
 

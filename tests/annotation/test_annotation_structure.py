@@ -116,10 +116,11 @@ def test_pictures_are_found_on_bricks_that_are_told_apart_from_near_only():
     )  # a cell or two over
 
 
-def test_a_clock_beside_a_door_is_a_thing_of_its_own():
+def test_two_boards_that_a_cable_joins_are_two_things():
     x, y = (a.ravel() for a in np.meshgrid(np.arange(0, 4, 0.02), np.arange(0, 2.4, 0.02)))
     colours = np.tile(np.array([75, -5, 10], np.float32), (len(x), 1))
-    colours[(x > 1) & (x < 1.9) & (y < 2)] = (35, 20, 20)
-    colours[np.hypot(x - 2.16, y - 1.5) < 0.22] = (90, 0, 0)
+    for west in (0.8, 2.2):
+        colours[(x > west) & (x < west + 0.8) & (y > 1) & (y < 1.6)] = (35, 20, 20)
+    colours[(x > 1.5) & (x < 2.3) & (y > 1.2) & (y < 1.32)] = (35, 20, 20)
     found = sorted((*corner, *sides) for _, corner, sides in flat_things(x, y, np.zeros(len(x)), colours))
-    assert np.array(found) == pytest.approx(np.array([[1, 0, 0.9, 2], [1.94, 1.28, 0.44, 0.44]]), abs=0.1)
+    assert np.array(found) == pytest.approx(np.array([[0.8, 1, 0.8, 0.6], [2.2, 1, 0.8, 0.6]]), abs=0.1)
