@@ -268,7 +268,7 @@ def settle(boxes: Sequence[FittedBox], structure: RoomStructure, faces: Sequence
         if level is None:
             box = _settled(box, boxes, structure)
             level = _face_below(box, faces, structure)
-        settled.append(box if level is None else _between(box, level, box.top))
+        settled.append(box if level is None else between(box, level, box.top))
     return settled
 
 
@@ -313,13 +313,19 @@ def _settled(box: FittedBox, boxes: Sequence[FittedBox], structure: RoomStructur
         if ceiling - box.top < UNDER_CEILING:
             lamp = max(box.size[:2]) < MAX_LAMP_SIDE and min(box.size[:2]) > MIN_LAMP_SHAPE * max(box.size[:2])
             cord = min(ceiling - box.top, MAX_CORD) if lamp else 0.0
-            return replace(_between(box, box.bottom, box.top + cord), hanging=True)
+            return replace(between(box, box.bottom, box.top + cord), hanging=True)
     if gap <= MIN_GAP or gap >= MAX_SUPPORT_GAP or (on_wall and gap > MAX_WALL_DROP):
         return box
-    return _between(box, box.bottom - gap, box.top)
+    return between(box, box.bottom - gap, box.top)
 
 
-def _between(box: FittedBox, bottom: float, top: float) -> FittedBox:
-    """The box with another bottom and top."""
+def between(box: FittedBox, bottom: float, top: float) -> FittedBox:
+    """The box with another bottom and top, world z in metres."""
     x, y, _ = box.centre
     return replace(box, centre=(x, y, (bottom + top) / 2), size=(box.size[0], box.size[1], top - bottom))
+
+
+def grown(box: FittedBox, by: float) -> FittedBox:
+    """The box, longer by so many metres along each of its axes."""
+    x, y, z = box.size
+    return replace(box, size=(x + by, y + by, z + by))

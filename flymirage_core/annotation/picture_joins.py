@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from flymirage_core.annotation.box_fitting import MAX_WALL_GAP, FittedBox, fit_box
+from flymirage_core.annotation.box_fitting import MAX_WALL_GAP, FittedBox, fit_box, grown
 from flymirage_core.annotation.fused_points import Frame, FusedPoints
 from flymirage_core.annotation.fusion import yaw_iou
 from flymirage_core.annotation.picture_votes import MIN_WINDOW_IOU, Overlaps, overlaps, visible_windows
@@ -87,12 +87,7 @@ def _may_be_one(a: FittedBox, b: FittedBox) -> bool:
         return False
     gap = max(a.bottom, b.bottom) - min(a.top, b.top)
     far = np.hypot(a.centre[0] - b.centre[0], a.centre[1] - b.centre[1]) > LARGEST
-    return not far and gap < TOUCH and yaw_iou(_grown(a), _grown(b)) > 0
-
-
-def _grown(box: FittedBox) -> FittedBox:
-    x, y, z = box.size
-    return FittedBox(box.centre, (x + TOUCH, y + TOUCH, z + TOUCH), box.yaw, box.members)
+    return not far and gap < TOUCH and yaw_iou(grown(a, TOUCH), grown(b, TOUCH)) > 0
 
 
 def _whole(a: FittedBox, b: FittedBox, cloud: FusedPoints, structure: RoomStructure) -> FittedBox:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flymirage_core.annotation.appearance import Observation
-from flymirage_core.annotation.box_fitting import MAX_WALL_GAP, FittedBox, fit_box
+from flymirage_core.annotation.box_fitting import MAX_WALL_GAP, FittedBox, between, fit_box, grown
 from flymirage_core.annotation.carving import Detections
 from flymirage_core.annotation.evidence import Evidence
 from flymirage_core.annotation.fusion import footprint_overlap, yaw_iou
@@ -51,8 +51,10 @@ COLOUR: Final = 15.0
 MIN_CHANGE: Final = 3.0
 APART: Final = 6
 """Slices between two cuts."""
-CUTS, CUTS_AN_AXIS = 3, 2
-"""Places at which a box is cut on trial, at most, so many of them along one axis."""
+CUTS: Final = 3
+"""Places at which a box is cut on trial, at most, ..."""
+CUTS_AN_AXIS: Final = 2
+"""... and of those along one axis."""
 TOUCH: Final = 0.1
 """Metres between what may be one thing."""
 KNOWN: Final = 0.3
@@ -208,7 +210,7 @@ def _piece(whole: FittedBox, members: NDArray[np.intp], evidence: Evidence) -> F
     box = fit_box(evidence.cloud.points, evidence.cloud.to_camera, members, evidence.structure, MAX_WALL_GAP)
     bottom = whole.bottom if box.bottom < whole.bottom + SETTLED else box.bottom
     top = whole.top if box.top > whole.top - SETTLED / 2 else box.top
-    return replace(_between(box, bottom, top), hanging=whole.hanging and top == whole.top)
+    return replace(between(box, bottom, top), hanging=whole.hanging and top == whole.top)
 
 
 def _joined(known: Known, fresh: Sequence[int], evidence: Evidence, judge: Judge) -> tuple[Known, list[int]]:
@@ -247,7 +249,7 @@ def _may_be_one(a: tuple[FittedBox, Belief], b: tuple[FittedBox, Belief], longes
         return False
     if max(belief.left_over, view.left_over) < LIKE_THINGS and (_stands_on(box, other) or _stands_on(other, box)):
         return False
-    return yaw_iou(_grown(box), _grown(other)) > 0
+    return yaw_iou(grown(box, TOUCH), grown(other, TOUCH)) > 0
 
 
 def _stands_on(upper: FittedBox, lower: FittedBox) -> bool:
@@ -255,11 +257,6 @@ def _stands_on(upper: FittedBox, lower: FittedBox) -> bool:
     if upper.bottom < lower.top - TOUCH or area > STANDING * under:
         return False
     return footprint_overlap(upper, lower) > STANDING * area
-
-
-def _grown(box: FittedBox) -> FittedBox:
-    x, y, z = box.size
-    return replace(box, size=(x + TOUCH, y + TOUCH, z + TOUCH))
 
 
 def _gain_of_join(whole: Belief, a: Belief, b: Belief) -> float:
@@ -274,10 +271,5 @@ def _whole(a: FittedBox, b: FittedBox, evidence: Evidence) -> FittedBox:
     """The box of two boxes' points, as high and as low as they are."""
     members = np.union1d(a.members, b.members)
     box = fit_box(evidence.cloud.points, evidence.cloud.to_camera, members, evidence.structure, MAX_WALL_GAP)
-    box = _between(box, min(box.bottom, a.bottom, b.bottom), max(box.top, a.top, b.top))
+    box = between(box, min(box.bottom, a.bottom, b.bottom), max(box.top, a.top, b.top))
     return replace(box, on_wall=a.on_wall and b.on_wall, hanging=a.hanging or b.hanging)
-
-
-def _between(box: FittedBox, bottom: float, top: float) -> FittedBox:
-    x, y, _ = box.centre
-    return replace(box, centre=(x, y, (bottom + top) / 2), size=(box.size[0], box.size[1], top - bottom))
